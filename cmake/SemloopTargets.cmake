@@ -1,0 +1,59 @@
+# Compile options of our own targets, never of their users.
+function(semloop_compile_options target)
+  target_compile_options(${target} PRIVATE -Wall -Wextra -Wpedantic -Wshadow -Wnon-virtual-dtor -Woverloaded-virtual)
+  if(SEMLOOP_WERROR)
+    target_compile_options(${target} PRIVATE -Werror)
+  endif()
+  if(SEMLOOP_SANITIZE)
+    target_compile_options(${target} PRIVATE -fsanitize=${SEMLOOP_SANITIZE} -fno-omit-frame-pointer -fno-sanitize-recover=all)
+    target_link_options(${target} PRIVATE -fsanitize=${SEMLOOP_SANITIZE})
+  endif()
+endfunction()
+
+# semloop_add_library(NAME [PUBLIC targets...] [PRIVATE targets...] [PRIVATE_INCLUDES dirs...])
+# makes libsemloop-NAME.so and the target semloop::NAME of libs/NAME/{src,include}.
+function(semloop_add_library name)
+  cmake_parse_arguments(arg "" "" "PUBLIC;PRIVATE;PRIVATE_INCLUDES" ${ARGN})
+  file(GLOB sources CONFIGURE_DEPENDS ${CMAKE_CURRENT_SOURCE_DIR}/src/*.cpp)
+  set(target lib-${name})
+  add_library(${target} SHARED ${sources})
+  add_library(semloop::${name} ALIAS ${target})
+  set_target_properties(${target} PROPERTIES OUTPUT_NAME semloop-${name} EXPORT_NAME ${name}
+    VERSION ${PROJECT_VERSION} SOVERSION ${PROJECT_VERSION_MAJOR}.${PROJECT_VERSION_MINOR})
+  target_compile_features(${target} PUBLIC cxx_std_17)
+  target_include_directories(${target} PUBLIC
+    $<BUILD_INTERFACE:${CMAKE_CURRENT_SOURCE_DIR}/include>
+    $<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}>)
+  target_include_directories(${target} SYSTEM PRIVATE ${arg_PRIVATE_INCLUDES})
+  # A module registers itself when its library is loaded: the linker must not drop it.
+  target_link_options(${target} INTERFACE LINKER:--no-as-needed)
+  target_link_libraries(${target} PUBLIC ${arg_PUBLIC} PRIVATE ${arg_PRIVATE})
+  semloop_compile_options(${target})
+  install(TARGETS ${target} EXPORT semloop-targets
+    LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR})
+  install(DIRECTORY include/ DESTINATION ${CMAKE_INSTALL_INCLUDEDIR})
+endfunction()
+
+# semloop_add_program(NAME targets...) makes bin/NAME of every .cpp in the current folder.
+function(semloop_add_program name)
+  file(GLOB sources CONFIGURE_DEPENDS ${CMAKE_CURRENT_SOURCE_DIR}/*.cpp)
+  add_executable(${name} ${sources})
+  target_link_libraries(${name} PRIVATE semloop-app-common ${ARGN})
+  semloop_compile_options(${name})
+  install(TARGETS ${name} RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR})
+endfunction()
+
+# semloop_add_tests(FOLDER targets...) makes bin/test-FOLDER of the *_unittest.cpp in tests/FOLDER.
+function(semloop_add_tests name)
+  file(GLOB sources CONFIGURE_DEPENDS ${CMAKE_CURRENT_SOURCE_DIR}/${name}/*.cpp)
+  if(NOT sources)
+    return()
+  endif()
+  add_executable(test-${name} ${sources})
+  target_link_libraries(test-${name} PRIVATE GTest::gtest GTest::gmock GTest::gtest_main ${ARGN})
+  target_include_directories(test-${name} PRIVATE ${PROJECT_SOURCE_DIR}/tests/common)
+  target_compile_definitions(test-${name} PRIVATE
+    SEMLOOP_SOURCE_DIR="${PROJECT_SOURCE_DIR}" SEMLOOP_BINARY_DIR="${PROJECT_BINARY_DIR}")
+  semloop_compile_options(test-${name})
+  gtest_discover_tests(test-${name} TEST_PREFIX ${name}. DISCOVERY_TIMEOUT 60 PROPERTIES TIMEOUT 600)
+endfunction()

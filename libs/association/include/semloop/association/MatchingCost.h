@@ -1,0 +1,73 @@
+#pragma once
+
+#include <mrpt/config/CConfigFileBase.h>
+#include <mrpt/math/TPoint3D.h>
+#include <mrpt/rtti/CObject.h>
+#include <semloop/association/ConfusionMatrix.h>
+#include <semloop/config/Options.h>
+#include <semloop/observations/CObservationInstances.h>
+
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace semloop
+{
+/** One side of an association, as seen from the current camera: a detection, a track moved by the
+ *  odometry, or an object's prediction. Points into its owner's data. */
+struct AssociationItem
+{
+	const InstanceMask* mask = nullptr;  //!< m_j or m_k; null: not in the picture
+	const LabelScores* labelScores = nullptr;  //!< never null
+	/** E_j, or the one e_k: each of unit length, all of one size; may be empty */
+	const std::vector<std::vector<float>>* embeddings = nullptr;
+	std::optional<mrpt::math::TPoint3D> centre;  //!< in the camera's frame [m], when depth tells
+};
+
+/** Cost of matching detection k to landmark j: a module ("the association's cost"). */
+class MatchingCost : public mrpt::rtti::CObject
+{
+	DEFINE_VIRTUAL_MRPT_OBJECT(MatchingCost)
+
+   public:
+	virtual void configure(
+		const mrpt::config::CConfigFileBase& config, const std::string& section) = 0;
+	virtual void setConfusionMatrix(ConfusionMatrix confusion) = 0;
+	/** In [0, 1], or +infinity when the pair is impossible. */
+	virtual double cost(const AssociationItem& landmark, const AssociationItem& detection) const = 0;
+};
+
+struct SemanticMatchingCostOptions : Options
+{
+	double lambda = 0.5;
+	double maxCentreDistance = 0.5;
+
+   protected:
+	void describe(OptionFields& fields) override;
+};
+
+/** The paper's cost, Eq. (3): L = 1 - W p(l_k | l_j), W = lambda IoU + (1 - lambda) d_f,
+ *  IoU = |m_k and m_j| / (|m_k| + |m_j| - |m_k and m_j|), d_f = max over e_j in E_j of e_j . e_k
+ *  (clipped to [0, 1]). Without embeddings on both sides W = IoU. A pair whose centres are further
+ *  apart than maxCentreDistance is impossible. */
+class SemanticMatchingCost : public MatchingCost
+{
+	DEFINE_MRPT_OBJECT(SemanticMatchingCost, semloop)
+
+   public:
+	void configure(
+		const mrpt::config::CConfigFileBase& config, const std::string& section) override;
+	void setConfusionMatrix(ConfusionMatrix confusion) override { confusion_ = std::move(confusion); }
+	double cost(const AssociationItem& landmark, const AssociationItem& detection) const override;
+
+	SemanticMatchingCostOptions options;
+
+   private:
+	ConfusionMatrix confusion_;
+};
+
+/** max over e in set of e . embedding; empty when either is. */
+std::optional<double> embeddingSimilarity(
+	const std::vector<std::vector<float>>& set, const std::vector<std::vector<float>>& other);
+
+}  // namespace semloop

@@ -1,0 +1,3 @@
+#include <semloop/association/Associator.h>
+
+IMPLEMENTS_VIRTUAL_MRPT_OBJECT(Associator, mrpt::rtti::CObject, semloop)

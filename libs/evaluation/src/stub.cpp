@@ -1,0 +1,1 @@
+#include <semloop/loop_closure/SemanticGraph.h>

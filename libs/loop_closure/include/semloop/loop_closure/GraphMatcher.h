@@ -1,0 +1,37 @@
+#pragma once
+
+#include <mrpt/config/CConfigFileBase.h>
+#include <mrpt/rtti/CObject.h>
+#include <semloop/loop_closure/SemanticGraph.h>
+
+#include <string>
+#include <vector>
+
+namespace semloop
+{
+/** Vertex indices, query first. */
+struct Match
+{
+	std::size_t query = 0;
+	std::size_t target = 0;
+	bool operator==(const Match& o) const { return query == o.query && target == o.target; }
+};
+
+struct GraphMatching
+{
+	std::vector<Match> matches;  //!< by query index; every vertex at most once
+	double score = 0.0;  //!< the matcher's own objective
+};
+
+/** Correspondences between two graphs from labels and topology (Sec. III-C). A module. */
+class GraphMatcher : public mrpt::rtti::CObject
+{
+	DEFINE_VIRTUAL_MRPT_OBJECT(GraphMatcher)
+
+   public:
+	virtual void configure(
+		const mrpt::config::CConfigFileBase& config, const std::string& section) = 0;
+	virtual GraphMatching match(const SemanticGraph& query, const SemanticGraph& target) const = 0;
+};
+
+}  // namespace semloop

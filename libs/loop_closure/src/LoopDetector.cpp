@@ -1,0 +1,3 @@
+#include <semloop/loop_closure/LoopDetector.h>
+
+IMPLEMENTS_VIRTUAL_MRPT_OBJECT(LoopDetector, mrpt::rtti::CObject, semloop)

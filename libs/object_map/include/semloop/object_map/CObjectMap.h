@@ -1,0 +1,138 @@
+#pragma once
+
+#include <mrpt/maps/CMetricMap.h>
+#include <semloop/config/Options.h>
+#include <semloop/object_map/Object.h>
+#include <semloop/observations/CObservationInstances.h>
+
+#include <map>
+#include <set>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace semloop
+{
+/** How objects are built. */
+struct ObjectMapInsertionOptions : Options
+{
+	double voxelsPerSide = 64;  //!< voxel size = size of the object when first seen / this ...
+	double minVoxelSize = 0.005;  //!< ... clipped to this range [m]
+	double maxVoxelSize = 0.03;  //!< [m]
+	double truncationVoxels = 4;  //!< truncation = this * voxel size
+	double maxDepth = 4.0;  //!< further measurements are not fused [m]
+	int maxEmbeddings = 10;  //!< |E_j| at most
+	double gate = 0.8;  //!< largest matching cost when the map itself associates (insertObservation)
+
+   protected:
+	void describe(OptionFields& fields) override;
+};
+
+/** When objects are dropped or united. */
+struct ObjectMapMaintenanceOptions : Options
+{
+	double minExistence = 0.1;  //!< below: the object is removed
+	double mergeIou = 0.3;  //!< boxes of two objects of compatible label that overlap more: one object
+	double mergeContainment = 0.7;  //!< same, for the share of the smaller box inside the larger
+
+   protected:
+	void describe(OptionFields& fields) override;
+};
+
+/** What the map expects to see from a camera. */
+struct PredictedObject
+{
+	ObjectId id = 0;
+	ObjectPrediction prediction;  //!< occluded parts already removed
+	double visibleShare = 1.0;  //!< visible pixels / pixels without other objects and measured depth
+};
+
+/** The object map as an MRPT metric map: one TSDF volume per object.
+ *
+ *  Frames: the world is MRPT's (z up); insertObservation() takes robot poses as every metric map
+ *  does. The semantic front end calls addObject() / fuse() with camera poses (optical frame). */
+class CObjectMap : public mrpt::maps::CMetricMap
+{
+	DEFINE_SERIALIZABLE(CObjectMap, semloop)
+
+   public:
+	CObjectMap() = default;
+
+	ObjectMapInsertionOptions insertionOptions;
+	ObjectMapMaintenanceOptions maintenanceOptions;
+
+	/** @name Objects
+	 * @{ */
+	const std::map<ObjectId, Object>& objects() const { return objects_; }
+	const Object& object(ObjectId id) const;  //!< throws std::out_of_range
+	const LabelSet& labels() const { return labels_; }
+	void setLabels(const LabelSet& labels) { labels_ = labels; }
+	const std::string& labelName(const Object& object) const;
+
+	/** A new object from one rectified detection; empty when its mask has too little valid depth. */
+	std::optional<ObjectId> addObject(
+		const RgbdFrame& frame, const Instance& instance, const mrpt::poses::CPose3D& T_world_camera);
+	/** Fuses an associated detection into V_j, l_j and E_j. False, and nothing changed, when its mask
+	 *  has too little valid depth. */
+	bool fuse(
+		ObjectId id, const RgbdFrame& frame, const Instance& instance,
+		const mrpt::poses::CPose3D& T_world_camera);
+	/** Counts one more time that each pair was seen together. */
+	void markCovisible(const std::set<ObjectId>& objects);
+
+	/** Predicted masks m_j of the objects in view, nearest first. An object hides what is behind it,
+	 *  and so does what the depth image (same camera, may be empty) measures in front of it. */
+	std::vector<PredictedObject> predict(
+		const mrpt::img::TCamera& camera, const mrpt::poses::CPose3D& T_world_camera,
+		const cv::Mat& depth = {}) const;
+
+	/** Lowers the existence of objects that the depth image looks through, and raises that of the
+	 *  associated ones. */
+	void updateExistence(
+		const std::vector<PredictedObject>& predicted, const RgbdFrame& frame,
+		const std::set<ObjectId>& associated);
+	/** Removes what does not exist (any more); returns what went. */
+	std::vector<ObjectId> removeUnsupported();
+	/** @} */
+
+	/** @name After a loop closure
+	 * @{ */
+	/** New T_world_object; ids that the map does not have throw std::out_of_range. */
+	void moveObjects(const std::map<ObjectId, mrpt::poses::CPose3D>& poses);
+	/** Puts `absorbed` into `kept` where both stand now, and removes it. */
+	void mergeObjects(ObjectId kept, ObjectId absorbed);
+	/** Pairs (kept = older id, absorbed) whose boxes say that they are one object; merge in this order. */
+	std::vector<std::pair<ObjectId, ObjectId>> findDuplicates() const;
+	/** @} */
+
+	/** @name mrpt::maps::CMetricMap
+	 * @{ */
+	bool isEmpty() const override { return objects_.empty(); }
+	void saveMetricMapRepresentationToFile(const std::string& filePrefix) const override;
+	void getVisualizationInto(mrpt::opengl::CSetOfObjects& out) const override;
+	std::string asString() const override;
+	/** @} */
+
+   protected:
+	void internal_clear() override;
+	bool internal_insertObservation(
+		const mrpt::obs::CObservation& observation,
+		const std::optional<const mrpt::poses::CPose3D>& robotPose = std::nullopt) override;
+	double internal_computeObservationLikelihood(
+		const mrpt::obs::CObservation& observation,
+		const mrpt::poses::CPose3D& takenFrom) const override;
+	bool internal_canComputeObservationLikelihood(
+		const mrpt::obs::CObservation& observation) const override;
+
+   private:
+	std::map<ObjectId, Object> objects_;
+	LabelSet labels_;
+	ObjectId nextId_ = 0;
+
+	MAP_DEFINITION_START(CObjectMap)
+	semloop::ObjectMapInsertionOptions insertOpts;
+	semloop::ObjectMapMaintenanceOptions maintenanceOpts;
+	MAP_DEFINITION_END(CObjectMap)
+};
+
+}  // namespace semloop

@@ -1,0 +1,17 @@
+#pragma once
+
+#include <semloop/object_map/CObjectMap.h>
+
+#include <string>
+
+namespace semloop
+{
+/** Throws InputError when the file cannot be written. gz-compressed MRPT serialisation. */
+void saveObjectMap(const std::string& path, const CObjectMap& map);
+/** Throws InputError on a missing, cut or foreign file. */
+CObjectMap::Ptr loadObjectMap(const std::string& path);
+
+/** Binary PLY of a mesh in world coordinates, with normals and colours. */
+void savePly(const std::string& path, const TriangleMesh& mesh, const mrpt::poses::CPose3D& T_world_object);
+
+}  // namespace semloop

@@ -1,0 +1,1 @@
+#include <semloop/object_map/ObjectFiles.h>

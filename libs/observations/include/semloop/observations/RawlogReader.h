@@ -1,0 +1,49 @@
+#pragma once
+
+#include <mrpt/obs/CObservation.h>
+
+#include <cstddef>
+#include <deque>
+#include <memory>
+#include <string>
+
+namespace semloop
+{
+/** Reads the observations of a rawlog one by one, in file order, without loading the file.
+ *
+ *  Both rawlog formats: plain observations, and sensory frames with actions (their observations
+ *  come one by one). External images of the file are found in `<file>_Images/`. Wheel odometry in
+ *  actions is passed over.
+ *
+ *  Unlike mrpt::obs::CRawlog it tells a file that ended from one that was cut: next() throws
+ *  InputError naming file and byte when the file ends inside an object, or holds a class that is
+ *  not registered (with the plug-in as the remedy). What was read before stays good. */
+class RawlogReader
+{
+   public:
+	/** Throws InputError when the file is missing or unreadable. */
+	explicit RawlogReader(const std::string& path);
+	~RawlogReader();
+
+	/** The next observation; empty at the end of the file. */
+	mrpt::obs::CObservation::Ptr next();
+
+	const std::string& path() const { return path_; }
+	/** Position in the file as stored on disk, in [0, 1], for progress bars. */
+	double progress() const;
+
+   private:
+	struct Stream;
+	std::string path_;
+	std::unique_ptr<Stream> stream_;
+	std::deque<mrpt::obs::CObservation::Ptr> pending_;
+	std::size_t objectsRead_ = 0;
+};
+
+/** The folder beside a rawlog where its external images live: path without extension + "_Images". */
+std::string externalImagesFolder(const std::string& rawlogPath);
+
+/** X.rawlog -> X_instances.rawlog. */
+std::string instancesSidecarPath(const std::string& rawlogPath);
+
+}  // namespace semloop

@@ -1,0 +1,2 @@
+#include <semloop/observations/CameraFrames.h>
+namespace semloop {}

@@ -1,0 +1,1 @@
+#include <semloop/pose_graph/PoseGraph.h>
