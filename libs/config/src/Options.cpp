@@ -29,6 +29,13 @@ std::string trimmed(const std::string& text)
 	return text.substr(begin, text.find_last_not_of(" \t\r") - begin + 1);
 }
 
+/** MRPT strips comments that begin with // or #; an ini file may also have "; ..." behind a value. */
+std::string withoutComment(const std::string& text)
+{
+	const auto comment = text.find(" ;");
+	return trimmed(text.substr(0, std::min(comment, text.find("\t;"))));
+}
+
 std::string toString(double value)
 {
 	std::ostringstream out;
@@ -79,7 +86,8 @@ bool assign(const OptionField& field, const std::string& text)
 	if (auto integer = std::get_if<int*>(&field.target))
 	{
 		int value = 0;
-		if (!parseNumber(text, value) || value < field.minimum || value > field.maximum) return false;
+		if (!parseNumber(text, value) || value < field.minimum || value > field.maximum)
+			return false;
 		**integer = value;
 		return true;
 	}
@@ -178,7 +186,7 @@ void Options::loadFromConfigFile(
 				place + ": unknown key; this section has " +
 				(known.empty() ? std::string("no keys") : join(known, ", ")));
 		}
-		const std::string text = trimmed(source.read_string(section, key, ""));
+		const std::string text = withoutComment(source.read_string(section, key, ""));
 		if (!assign(*field, text))
 			throw UsageError(place + " = " + text + ": not allowed; use " + allowed(*field));
 	}

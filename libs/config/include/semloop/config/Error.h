@@ -9,14 +9,14 @@ namespace semloop
  *  Programs print it and exit with 1. */
 class InputError : public std::runtime_error
 {
-   public:
+ public:
 	using std::runtime_error::runtime_error;
 };
 
 /** Wrong usage: an argument or a configuration key. what() is one line. Programs exit with 2. */
 class UsageError : public std::runtime_error
 {
-   public:
+ public:
 	using std::runtime_error::runtime_error;
 };
 

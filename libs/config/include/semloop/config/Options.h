@@ -20,28 +20,30 @@ struct OptionField
 	Target target;
 	double minimum = -std::numeric_limits<double>::infinity();
 	double maximum = std::numeric_limits<double>::infinity();
-	double scale = 1.0;  //!< value in the file = value in memory * scale (180 / pi for degrees)
+	double scale = 1.0;	 //!< value in the file = value in memory * scale (180 / pi for degrees)
 	std::vector<std::string> choices;  //!< of a string; empty: any
-	std::string help;  //!< one line: meaning, unit, equation
+	std::string help;				   //!< one line: meaning, unit, equation
 };
 
 /** Collects the fields of an options struct; see Options::describe(). */
 class OptionFields
 {
-   public:
+ public:
 	void flag(std::string key, bool& value, std::string help);
 	void integer(std::string key, int& value, int minimum, int maximum, std::string help);
 	void number(std::string key, double& value, double minimum, double maximum, std::string help);
 	/** An angle: radians in memory, degrees in the file; the key must end in "_deg". */
-	void degrees(std::string key, double& value, double minimumDeg, double maximumDeg, std::string help);
+	void degrees(
+		std::string key, double& value, double minimumDeg, double maximumDeg, std::string help);
 	void text(std::string key, std::string& value, std::string help);
-	void choice(std::string key, std::string& value, std::vector<std::string> choices, std::string help);
+	void choice(
+		std::string key, std::string& value, std::vector<std::string> choices, std::string help);
 	/** A comma-separated list. */
 	void list(std::string key, std::vector<std::string>& value, std::string help);
 
 	const std::vector<OptionField>& all() const { return fields_; }
 
-   private:
+ private:
 	std::vector<OptionField> fields_;
 };
 
@@ -52,7 +54,7 @@ class OptionFields
  *  with file, section, key, value and what is allowed. A missing key or section keeps the default. */
 class Options : public mrpt::config::CLoadableOptions
 {
-   public:
+ public:
 	void loadFromConfigFile(
 		const mrpt::config::CConfigFileBase& source, const std::string& section) override;
 	void saveToConfigFile(
@@ -64,7 +66,7 @@ class Options : public mrpt::config::CLoadableOptions
 
 	std::vector<OptionField> fields() const;
 
-   protected:
+ protected:
 	virtual void describe(OptionFields& fields) = 0;
 };
 

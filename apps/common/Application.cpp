@@ -1,0 +1,77 @@
+#include "Application.h"
+
+#include <semloop/config/Error.h>
+
+#include <filesystem>
+#include <fstream>
+#include <iostream>
+
+namespace semloop
+{
+namespace
+{
+std::string firstLine(const std::string& text)
+{
+	return text.substr(0, text.find('\n'));
+}
+
+/** TCLAP prints a wrong call over many lines and goes on: we want one line, and out. */
+class ThrowingOutput : public TCLAP::StdOutput
+{
+ public:
+	void failure(TCLAP::CmdLineInterface& commandLine, TCLAP::ArgException& e) override
+	{
+		const std::string where = e.argId() == "undefined" ? "" : e.argId() + ": ";
+		throw UsageError(where + e.error() + "; see " + commandLine.getProgramName() + " --help");
+	}
+};
+}  // namespace
+
+int runApplication(const std::string& name, const std::function<int()>& body)
+{
+	try
+	{
+		return body();
+	}
+	catch (const UsageError& e)
+	{
+		std::cerr << name << ": " << e.what() << "\n";
+		return kUsage;
+	}
+	catch (const InputError& e)
+	{
+		std::cerr << name << ": " << e.what() << "\n";
+		return kFailed;
+	}
+	catch (const std::exception& e)
+	{
+		// MRPT's exceptions carry a call stack behind the first line.
+		std::cerr << name << ": " << firstLine(e.what()) << "\n";
+		return kFailed;
+	}
+}
+
+bool parseArguments(TCLAP::CmdLine& commandLine, int argc, char** argv)
+{
+	ThrowingOutput output;
+	commandLine.setOutput(&output);
+	return commandLine.parse(argc, const_cast<const char**>(argv));
+}
+
+void requireFile(const std::string& path, const std::string& remedy)
+{
+	if (!std::filesystem::is_regular_file(path))
+		throw InputError(path + ": no such file; " + remedy);
+}
+
+void requireWritableFolder(const std::string& path)
+{
+	std::error_code error;
+	std::filesystem::create_directories(path, error);
+	const auto probe = std::filesystem::path(path) / ".semloop-write-test";
+	if (!std::ofstream(probe))
+		throw InputError(path + ": cannot write there; choose another output directory");
+	std::filesystem::remove(probe, error);
+}
+
+}  // namespace semloop

@@ -1,0 +1,32 @@
+#pragma once
+
+#include <chrono>
+#include <cstddef>
+#include <string>
+
+namespace semloop
+{
+/** A line on stderr with share done, rate and time left, redrawn a few times a second; shows nothing
+ *  when stderr is not a terminal or the work takes less than two seconds. */
+class ProgressBar
+{
+ public:
+	explicit ProgressBar(std::string what);
+	~ProgressBar();
+
+	/** Items done so far and the share of the whole, in [0, 1]. */
+	void update(std::size_t items, double share);
+	/** Wipes the line, so that a message can be printed. */
+	void clear();
+
+ private:
+	using Clock = std::chrono::steady_clock;
+
+	std::string what_;
+	bool terminal_ = false;
+	bool drawn_ = false;
+	Clock::time_point start_;
+	Clock::time_point lastDraw_;
+};
+
+}  // namespace semloop
