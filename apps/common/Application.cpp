@@ -18,10 +18,13 @@ std::string firstLine(const std::string& text)
 /** TCLAP prints a wrong call over many lines and goes on: we want one line, and out. */
 class ThrowingOutput : public TCLAP::StdOutput
 {
- public:
+public:
 	void failure(TCLAP::CmdLineInterface& commandLine, TCLAP::ArgException& e) override
 	{
-		const std::string where = e.argId() == "undefined" ? "" : e.argId() + ": ";
+		// Without a culprit TCLAP names " " or "undefined".
+		const bool named = e.argId().find_first_not_of(' ') != std::string::npos &&
+						   e.argId() != "undefined";
+		const std::string where = named ? e.argId() + ": " : "";
 		throw UsageError(where + e.error() + "; see " + commandLine.getProgramName() + " --help");
 	}
 };

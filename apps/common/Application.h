@@ -12,7 +12,7 @@ enum ExitCode
 {
 	kSuccess = 0,
 	kFailed = 1,  //!< ran, and failed: the data are at fault
-	kUsage = 2	  //!< wrong arguments or configuration
+	kUsage = 2    //!< wrong arguments or configuration
 };
 
 /** Runs a program's body and turns what it throws into one line on stderr and an exit code:

@@ -10,7 +10,7 @@ namespace semloop
  *  when stderr is not a terminal or the work takes less than two seconds. */
 class ProgressBar
 {
- public:
+public:
 	explicit ProgressBar(std::string what);
 	~ProgressBar();
 
@@ -19,7 +19,7 @@ class ProgressBar
 	/** Wipes the line, so that a message can be printed. */
 	void clear();
 
- private:
+private:
 	using Clock = std::chrono::steady_clock;
 
 	std::string what_;

@@ -12,7 +12,7 @@ using CostMatrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::
 struct AssignmentResult
 {
 	std::vector<std::pair<std::size_t, std::size_t>> matches;  //!< (row, column), by row
-	double cost = 0.0;  //!< sum over the matches
+	double cost = 0.0;                                         //!< sum over the matches
 };
 
 /** Linear assignment, Eq. (1): min sum A(j,k) L(j,k), every row and every column at most once.

@@ -9,13 +9,14 @@
 
 namespace semloop
 {
-/** Detections -> landmarks. Matches are (landmark, detection); everything else is unmatched. A
- *  module with two implementations, so that the paper's experiment (Sec. IV-A) can be run. */
+/** Detections -> landmarks. Matches are (landmark, detection), each at most once, by landmark;
+ *  everything else is unmatched. A module with two implementations, so that the paper's experiment
+ *  (Sec. IV-A) can be run. */
 class Associator : public mrpt::rtti::CObject
 {
 	DEFINE_VIRTUAL_MRPT_OBJECT(Associator)
 
-   public:
+public:
 	virtual void configure(
 		const mrpt::config::CConfigFileBase& config, const std::string& section) = 0;
 	virtual void setMatchingCost(std::shared_ptr<const MatchingCost> cost) = 0;

@@ -1,0 +1,188 @@
+#include "SlamRun.h"
+
+#include <mrpt/config/CConfigFile.h>
+#include <semloop/config/Error.h>
+#include <semloop/slam/Configuration.h>
+#include <semloop/slam/RunResults.h>
+
+#include <chrono>
+#include <cstdio>
+#include <filesystem>
+#include <iostream>
+
+#include "Application.h"
+#include "ProgressBar.h"
+#include "StopSignal.h"
+
+namespace semloop
+{
+namespace
+{
+/** Warnings and news on stderr, one line each, without tearing the progress bar. */
+class ConsoleLogger : public mrpt::system::COutputLogger
+{
+public:
+	explicit ConsoleLogger(ProgressBar& bar) : COutputLogger("semloop-slam")
+	{
+		logging_enable_console_output = false;
+		logRegisterCallback(
+			[&bar](
+				std::string_view text, const mrpt::system::VerbosityLevel, std::string_view,
+				const mrpt::Clock::time_point)
+			{
+				bar.clear();
+				std::cerr << "semloop-slam: " << text
+						  << (text.empty() || text.back() != '\n' ? "\n" : "");
+			});
+	}
+};
+
+void requireArgument(const std::string& value, const char* flag, const char* what)
+{
+	if (value.empty())
+		throw UsageError(std::string(flag) + " is missing: " + what + "; see semloop-slam --help");
+}
+
+void applyOverride(mrpt::config::CConfigFileBase& config, const std::string& text)
+{
+	const auto equals = text.find('=');
+	const auto dot = text.find('.');
+	if (equals == std::string::npos || dot == std::string::npos || dot > equals || dot == 0)
+		throw UsageError("--set " + text + ": write section.key=value");
+	config.write(
+		text.substr(0, dot), text.substr(dot + 1, equals - dot - 1), text.substr(equals + 1));
+}
+
+/** A configuration that --set changes for this run only, never on disk. */
+class RunConfiguration : public mrpt::config::CConfigFile
+{
+public:
+	explicit RunConfiguration(const std::string& path) : CConfigFile(path) {}
+	// MRPT would save the overrides otherwise.
+	~RunConfiguration() override { discardSavingChanges(); }
+};
+
+void useRecordedInstances(mrpt::config::CConfigFileBase& config, const SlamRunArguments& arguments)
+{
+	std::string file = arguments.instances;
+	if (file.empty() && config.keyExists("segmentation", "file")) return;
+	if (file.empty()) file = instancesSidecarPath(arguments.rawlog);
+	ModuleNames names;
+	names.loadFromConfigFile(config, "modules");
+	const bool recorded = names.segmenter == "semloop::RecordedSegmenter";
+	if (!arguments.instances.empty())
+	{
+		requireFile(file, "make it with rawlog-segment");
+		if (!recorded)
+			throw UsageError(
+				"--instances needs semloop::RecordedSegmenter, but " + configFileName(config) +
+				": [modules] segmenter = " + names.segmenter);
+	}
+	if (recorded) config.write("segmentation", "file", file);
+}
+
+struct Progress
+{
+	SemanticSlam& slam;
+	RunInfo& info;
+	ProgressBar& bar;
+};
+
+void report(const std::vector<std::string>& warnings, Progress& progress)
+{
+	for (const auto& warning : warnings)
+	{
+		progress.bar.clear();
+		std::cerr << "semloop-slam: warning: " << warning << "\n";
+		progress.info.skippedFrames.push_back(warning);
+	}
+}
+
+/** What ended the run early because of bad input; empty otherwise. */
+std::string processAll(FrameSource& source, std::size_t maxFrames, Progress progress)
+{
+	while (!stopRequested())
+	{
+		if (maxFrames > 0 && progress.slam.frameCount() >= maxFrames)
+		{
+			progress.info.endedBy = "--max-frames";
+			return {};
+		}
+		try
+		{
+			const auto frame = source.next();
+			if (!frame)
+			{
+				report(source.skippedAtEnd(), progress);
+				return {};
+			}
+			report(frame->skipped, progress);
+			progress.slam.process(*frame);
+			progress.bar.update(progress.slam.frameCount(), frame->progress);
+		}
+		catch (const std::exception& e)
+		{
+			const std::string what = e.what();
+			return progress.info.endedBy = what.substr(0, what.find('\n'));
+		}
+	}
+	progress.info.endedBy = "Ctrl-C";
+	return {};
+}
+
+void printSummary(const SlamRunArguments& arguments, const SemanticSlam& slam, const RunInfo& info)
+{
+	std::size_t accepted = 0;
+	for (const auto& record : slam.loops())
+		accepted += record.verdict.decision == LoopVerdict::Decision::Accepted;
+	std::printf(
+		"%zu frames (%zu skipped, %zu lost) in %.1f s, %zu objects, %zu loops closed: %s\n",
+		slam.frameCount(), info.skippedFrames.size(), slam.lostFrameCount(), info.wallSeconds,
+		slam.map().objects().size(), accepted, arguments.output.c_str());
+}
+}  // namespace
+
+int runSlam(const SlamRunArguments& arguments)
+{
+	requireArgument(arguments.config, "-c", "the configuration");
+	requireArgument(arguments.rawlog, "-i", "the rawlog");
+	requireArgument(arguments.output, "-o", "the folder for the results");
+	requireFile(arguments.config, "config_ini/ has examples");
+	requireFile(arguments.rawlog, "make one with tum2rawlog or rawlog-grabber");
+	requireWritableFolder(arguments.output);
+
+	RunConfiguration config(arguments.config);
+	for (const auto& text : arguments.overrides) applyOverride(config, text);
+	useRecordedInstances(config, arguments);
+
+	const auto start = std::chrono::steady_clock::now();
+	ProgressBar bar("mapping");
+	ConsoleLogger logger(bar);
+	StageTimings timings;
+	FrontEnd frontEnd = makeFrontEnd(config);
+	SemanticSlam slam(config, logger, timings);
+	RunInfo info;
+	info.rawlog = arguments.rawlog;
+	info.config = arguments.config;
+
+	catchStopSignal();
+	FrameSource source(
+		arguments.rawlog, frontEnd.segmenter, frontEnd.embedder, slam.options().framesAhead,
+		timings);
+	std::string failure = processAll(source, arguments.maxFrames, {slam, info, bar});
+	bar.clear();
+	slam.finish();
+	info.wallSeconds =
+		std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+	writeRunResults(arguments.output, slam, info, timings);
+	printSummary(arguments, slam, info);
+	if (failure.empty() && slam.frameCount() == 0 && !stopRequested())
+		failure = arguments.rawlog +
+				  ": no usable RGB-D frame (CObservation3DRangeScan with colour and depth) in it";
+	if (failure.empty()) return kSuccess;
+	std::cerr << "semloop-slam: " << failure << "; results so far are in " << arguments.output
+			  << "\n";
+	return kFailed;
+}
+
+}  // namespace semloop

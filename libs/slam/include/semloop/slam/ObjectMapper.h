@@ -1,0 +1,68 @@
+#pragma once
+
+#include <semloop/association/Associator.h>
+#include <semloop/association/InstanceTracker.h>
+#include <semloop/object_map/CObjectMap.h>
+#include <semloop/slam/LocalMap.h>
+#include <semloop/slam/StageTimings.h>
+
+#include <map>
+#include <memory>
+#include <optional>
+#include <set>
+#include <vector>
+
+namespace semloop
+{
+/** One detection that went into the map. */
+struct ObjectObservation
+{
+	ObjectId object = 0;
+	std::size_t instance = 0;  //!< index in the frame's observation
+	uint64_t track = 0;
+	bool isNew = false;
+};
+
+/** Sec. III-B, object-level data association and fusion: detections that the tracker confirmed are
+ *  assigned to the objects' predicted masks by Eq. (1)-(3) and fused; what stays without a match
+ *  becomes a new object. */
+class ObjectMapper
+{
+public:
+	ObjectMapper(
+		CObjectMap::Ptr map, std::shared_ptr<const Associator> associator,
+		std::shared_ptr<const MatchingCost> cost, double reassociationGate, StageTimings& timings);
+
+	/** T_world_camera of the optical frame. The local map tells which objects are of this time: with
+	 *  others the drift since then may be large, so an association must be better than
+	 *  reassociationGate. */
+	std::vector<ObjectObservation> update(
+		const RgbdFrame& frame, const CObservationInstances& observation,
+		const std::vector<TrackedInstance>& tracked, const mrpt::poses::CPose3D& T_world_camera,
+		const LocalMap& localMap);
+
+	/** Tracks of the absorbed object belong to the kept one from now on. */
+	void merge(ObjectId kept, ObjectId absorbed);
+	void remove(ObjectId id);
+
+private:
+	/** Object of each detection, in the order of confirmed. */
+	std::vector<std::optional<ObjectId>> associate(
+		const RgbdFrame& frame, const CObservationInstances& observation,
+		const std::vector<TrackedInstance>& confirmed,
+		const std::vector<PredictedObject>& predicted, const mrpt::poses::CPose3D& T_world_camera,
+		const LocalMap& localMap) const;
+	/** Fuses the detection into its object, or makes one; empty when neither was possible. */
+	std::optional<ObjectObservation> fuse(
+		const RgbdFrame& frame, const Instance& instance, const TrackedInstance& tracked,
+		std::optional<ObjectId> object, const mrpt::poses::CPose3D& T_world_camera);
+
+	CObjectMap::Ptr map_;
+	std::shared_ptr<const Associator> associator_;
+	std::shared_ptr<const MatchingCost> cost_;
+	double reassociationGate_ = 0.0;
+	StageTimings& timings_;
+	std::map<uint64_t, ObjectId> objectOfTrack_;
+};
+
+}  // namespace semloop

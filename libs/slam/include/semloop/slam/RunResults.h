@@ -1,0 +1,30 @@
+#pragma once
+
+#include <semloop/slam/SemanticSlam.h>
+#include <semloop/slam/StageTimings.h>
+
+#include <string>
+#include <vector>
+
+namespace semloop
+{
+/** What only the caller of SemanticSlam knows about a run. */
+struct RunInfo
+{
+	std::string rawlog;
+	std::string config;
+	std::vector<std::string> skippedFrames;     //!< one warning each
+	std::string endedBy = "end of the rawlog";  //!< or what stopped the run
+	double wallSeconds = 0.0;
+};
+
+/** Writes every file of a run (doc/file-formats.md) into an existing folder; stale object meshes of
+ *  an earlier run are removed. Throws InputError naming the file that cannot be written. */
+void writeRunResults(
+	const std::string& folder, const SemanticSlam& slam, const RunInfo& info,
+	const StageTimings& timings);
+
+/** loops.jsonl: one JSON object a line, without anything that depends on the machine's speed. */
+std::string loopsAsJsonLines(const std::vector<LoopRecord>& loops);
+
+}  // namespace semloop

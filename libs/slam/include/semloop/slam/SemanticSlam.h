@@ -1,0 +1,109 @@
+#pragma once
+
+#include <mrpt/config/CConfigFileBase.h>
+#include <mrpt/system/COutputLogger.h>
+#include <semloop/association/InstanceTracker.h>
+#include <semloop/object_map/CObjectMap.h>
+#include <semloop/observations/Trajectory.h>
+#include <semloop/odometry/Odometry.h>
+#include <semloop/pose_graph/PoseGraph.h>
+#include <semloop/slam/FrameSource.h>
+#include <semloop/slam/LocalMap.h>
+#include <semloop/slam/LoopCloser.h>
+#include <semloop/slam/LoopRecord.h>
+#include <semloop/slam/ObjectMapper.h>
+#include <semloop/slam/SlamOptions.h>
+#include <semloop/slam/StageTimings.h>
+
+#include <memory>
+#include <optional>
+#include <set>
+#include <string>
+#include <vector>
+
+namespace semloop
+{
+/** Object-level RGB-D SLAM with semantic loop closure: the paper's pipeline, one frame at a time.
+ *
+ *  The world: z up (by gravity when the accelerometer is known), its origin at the first camera. */
+class SemanticSlam
+{
+public:
+	/** Makes and configures the modules that [modules] names; throws UsageError on a bad
+	 *  configuration. The logger gets what a person may want to know while it runs. */
+	SemanticSlam(
+		const mrpt::config::CConfigFileBase& config, mrpt::system::COutputLogger& logger,
+		StageTimings& timings);
+
+	/** One frame, in order of time. */
+	void process(const SlamFrame& input);
+	/** A last optimisation and clean-up of the map. */
+	void finish();
+
+	/** @name Results
+	 * @{ */
+	const CObjectMap& map() const { return *map_; }
+	const PoseGraph& poseGraph() const { return *poseGraph_; }
+	const std::vector<LoopRecord>& loops() const { return loops_; }
+	Trajectory trajectory() const;  //!< optimised T_world_camera of every frame
+	const Trajectory& odometryTrajectory() const { return odometryTrajectory_; }
+	/** Frames kept for map.simplemap, with their camera node. */
+	struct KeyFrame
+	{
+		std::size_t frame = 0;
+		mrpt::obs::CObservation3DRangeScan::Ptr scan;
+		CObservationInstances::Ptr instances;
+	};
+	const std::vector<KeyFrame>& keyFrames() const { return keyFrames_; }
+	std::size_t frameCount() const { return odometryTrajectory_.size(); }
+	std::size_t segmentedFrameCount() const { return segmentedFrames_; }
+	std::size_t lostFrameCount() const { return lostFrames_; }
+	std::size_t detectionCount() const { return detections_; }
+	const SlamOptions& options() const { return options_; }
+	/** @} */
+
+private:
+	void makeModules(const mrpt::config::CConfigFileBase& config);
+	void makeMap(const mrpt::config::CConfigFileBase& config);
+	void observe(const mrpt::obs::CObservation& observation);
+	void adoptLabels(const CObservationInstances& instances);
+	void placeFirstCamera(const RgbdFrame& frame);
+	void addCamera(const RgbdFrame& frame, const OdometryEstimate& odometry);
+	void addObservations(const std::vector<ObjectObservation>& seen);
+	void keepKeyFrame(const SlamFrame& input);
+	void maintainMap();
+	void closeLoop(mrpt::Clock::time_point time);
+	void followOptimizedCamera();
+
+	mrpt::poses::CPose3D cameraPose() const { return T_world_odom_ + T_odom_camera_; }
+	NodeId cameraNode() const { return NodeId::camera(frameCount() - 1); }
+
+	mrpt::system::COutputLogger& logger_;
+	StageTimings& timings_;
+	ModuleNames modules_;
+	SlamOptions options_;
+
+	std::shared_ptr<Odometry> odometry_;
+	std::shared_ptr<MatchingCost> matchingCost_;
+	std::shared_ptr<PoseGraph> poseGraph_;
+	CObjectMap::Ptr map_;
+	LocalMap localMap_;
+	std::unique_ptr<InstanceTracker> tracker_;
+	std::unique_ptr<ObjectMapper> mapper_;
+	std::unique_ptr<LoopCloser> loopCloser_;
+
+	mrpt::poses::CPose3D T_world_firstCamera_;
+	mrpt::poses::CPose3D T_world_odom_;  //!< follows the loop closures
+	mrpt::poses::CPose3D T_odom_camera_;
+	mrpt::poses::CPose3D T_segmented_camera_;  //!< motion since the last segmented frame
+	std::optional<mrpt::math::TVector3D> up_;  //!< in the robot's frame, from the accelerometer
+	Trajectory odometryTrajectory_;
+	std::vector<LoopRecord> loops_;
+	std::vector<KeyFrame> keyFrames_;
+	double pathAtKeyFrame_ = 0.0;
+	std::size_t segmentedFrames_ = 0;
+	std::size_t lostFrames_ = 0;
+	std::size_t detections_ = 0;
+};
+
+}  // namespace semloop

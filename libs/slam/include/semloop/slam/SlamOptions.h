@@ -1,0 +1,47 @@
+#pragma once
+
+#include <semloop/config/Options.h>
+
+#include <string>
+#include <vector>
+
+namespace semloop
+{
+/** [modules]: which class does what. A name that is not registered stops with the list of those that
+ *  are; plug-ins are loaded first. */
+struct ModuleNames : Options
+{
+	std::vector<std::string> plugins;
+	std::string segmenter = "semloop::RecordedSegmenter";
+	std::string embedder = "semloop::ColorHistogramEmbedder";
+	std::string odometry = "semloop::OpenCvOdometry";
+	std::string matchingCost = "semloop::SemanticMatchingCost";
+	std::string associator = "semloop::ObjectAssociator";
+	std::string loopDetector = "semloop::SemanticLoopDetector";
+	std::string poseGraph = "semloop::CeresPoseGraph";
+
+protected:
+	void describe(OptionFields& fields) override;
+};
+
+/** [slam]: what belongs to no single module. */
+struct SlamOptions : Options
+{
+	std::string confusionMatrix;    //!< file; empty: identity smoothed
+	double confusionCorrect = 0.9;  //!< p(l | l) without a file
+	bool level = true;              //!< turn the world so that gravity points down -z
+	int framesAhead = 4;  //!< frames read and segmented ahead in their own thread; 0: no thread
+	int loopEveryFrames = 10;      //!< segmented frames between two loop detections
+	int maintainEveryFrames = 30;  //!< segmented frames between two clean-ups of the map
+	int minObservations = 5;  //!< objects seen in fewer frames are left out of the results
+	double reassociationGate =
+		0.45;                        //!< largest matching cost with an object outside the local map
+	double observationSigma = 0.05;  //!< of e_oc [m]
+	double observationSigmaAngle = 0.05;  //!< of e_oc [rad]
+	double keyPoseDistance = 0.3;         //!< path between two key poses of map.simplemap [m]
+
+protected:
+	void describe(OptionFields& fields) override;
+};
+
+}  // namespace semloop

@@ -1,0 +1,202 @@
+#include <mrpt/system/datetime.h>
+#include <semloop/config/Error.h>
+#include <semloop/slam/FrameSource.h>
+
+#include <condition_variable>
+#include <deque>
+#include <mutex>
+#include <utility>
+
+using mrpt::obs::CObservation3DRangeScan;
+
+namespace semloop
+{
+/** Bounded hand-over between the reading thread and the consumer. */
+class FrameSource::Queue
+{
+public:
+	explicit Queue(std::size_t capacity) : capacity_(capacity) {}
+
+	/** False when nobody wants more. */
+	bool push(SlamFrame frame)
+	{
+		std::unique_lock lock(mutex_);
+		changed_.wait(lock, [&] { return frames_.size() < capacity_ || stopped_; });
+		if (stopped_) return false;
+		frames_.push_back(std::move(frame));
+		changed_.notify_all();
+		return true;
+	}
+	void finish(std::exception_ptr error)
+	{
+		const std::lock_guard lock(mutex_);
+		finished_ = true;
+		error_ = error;
+		changed_.notify_all();
+	}
+	void stop()
+	{
+		const std::lock_guard lock(mutex_);
+		stopped_ = true;
+		changed_.notify_all();
+	}
+	std::optional<SlamFrame> pop()
+	{
+		std::unique_lock lock(mutex_);
+		changed_.wait(lock, [&] { return !frames_.empty() || finished_; });
+		if (frames_.empty())
+		{
+			if (error_) std::rethrow_exception(std::exchange(error_, nullptr));
+			return std::nullopt;
+		}
+		SlamFrame frame = std::move(frames_.front());
+		frames_.pop_front();
+		changed_.notify_all();
+		return frame;
+	}
+
+private:
+	const std::size_t capacity_;
+	std::mutex mutex_;
+	std::condition_variable changed_;
+	std::deque<SlamFrame> frames_;
+	bool finished_ = false;
+	bool stopped_ = false;
+	std::exception_ptr error_;
+};
+
+FrameSource::FrameSource(
+	const std::string& rawlog, std::shared_ptr<Segmenter> segmenter,
+	std::shared_ptr<Embedder> embedder, int framesAhead, StageTimings& timings)
+	: segmenter_(std::move(segmenter)),
+	  embedder_(std::move(embedder)),
+	  timings_(timings),
+	  reader_(rawlog)
+{
+	if (framesAhead == 0) return;
+	queue_ = std::make_unique<Queue>(std::size_t(framesAhead));
+	thread_ = std::thread(
+		[this]
+		{
+			std::exception_ptr error;
+			try
+			{
+				while (auto frame = produce())
+					if (!queue_->push(std::move(*frame))) break;
+			}
+			catch (...)
+			{
+				error = std::current_exception();
+			}
+			queue_->finish(error);
+		});
+}
+
+FrameSource::~FrameSource()
+{
+	if (queue_) queue_->stop();
+	if (thread_.joinable()) thread_.join();
+}
+
+std::optional<SlamFrame> FrameSource::next()
+{
+	return queue_ ? queue_->pop() : produce();
+}
+
+mrpt::obs::CObservation::Ptr FrameSource::read()
+{
+	if (readError_) std::rethrow_exception(std::exchange(readError_, nullptr));
+	return lookAhead_ ? std::exchange(lookAhead_, nullptr) : reader_.next();
+}
+
+void FrameSource::lookAhead()
+{
+	try
+	{
+		lookAhead_ = reader_.next();
+	}
+	catch (...)
+	{
+		// The frame at hand is good: the error waits for its turn.
+		readError_ = std::current_exception();
+	}
+}
+
+std::optional<SlamFrame> FrameSource::produce()
+{
+	while (const auto observation = read())
+	{
+		const auto scan = std::dynamic_pointer_cast<CObservation3DRangeScan>(observation);
+		if (!scan)
+		{
+			pendingOthers_.push_back(observation);
+			continue;
+		}
+		SlamFrame frame;
+		if (!prepare(scan, frame)) continue;
+		frame.scan = scan;
+		frame.before = std::exchange(pendingOthers_, {});
+		frame.skipped = std::exchange(pendingSkipped_, {});
+		frame.progress = reader_.progress();
+		return frame;
+	}
+	return std::nullopt;
+}
+
+void FrameSource::checkTime(const CObservation3DRangeScan& scan)
+{
+	if (lastTime_ && scan.timestamp <= *lastTime_)
+		throw InputError(
+			reader_.path() + ": frame at " + mrpt::system::dateTimeToString(scan.timestamp) +
+			": time goes backwards (the frame before is of " +
+			mrpt::system::dateTimeToString(*lastTime_) + "); sort the rawlog by time first");
+	lastTime_ = scan.timestamp;
+}
+
+bool FrameSource::prepare(const CObservation3DRangeScan::Ptr& scan, SlamFrame& frame)
+{
+	checkTime(*scan);
+	RgbdFrame raw;
+	try
+	{
+		const StageTimings::Scope timing(timings_, "read");
+		raw = rgbdFrameFrom(*scan);
+		if (countValidDepth(raw) == 0) throw InputError("no pixel has a valid depth");
+	}
+	catch (const std::exception& e)
+	{
+		const std::string what = e.what();
+		pendingSkipped_.push_back(
+			reader_.path() + ": frame at " + mrpt::system::dateTimeToString(scan->timestamp) +
+			" skipped: " + what.substr(0, what.find('\n')));
+		return false;
+	}
+	segment(raw, frame);
+	const StageTimings::Scope timing(timings_, "rectify");
+	frame.rgbd = rectifier_.rectify(raw);
+	if (frame.instances) frame.instances = rectifier_.rectify(*frame.instances);
+	return true;
+}
+
+void FrameSource::segment(const RgbdFrame& raw, SlamFrame& frame)
+{
+	const StageTimings::Scope timing(timings_, "segmentation");
+	// A rawlog into which the instances were merged has them right behind their scan.
+	lookAhead();
+	const auto recorded = std::dynamic_pointer_cast<CObservationInstances>(lookAhead_);
+	if (recorded && recorded->timestamp == raw.time)
+	{
+		lookAhead_.reset();
+		frame.instances = recorded;
+	}
+	else
+		frame.instances = segmenter_->segment(raw);
+	if (frame.instances && embedder_)
+	{
+		for (Instance& instance : frame.instances->instances)
+			if (instance.embedding.empty())
+				instance.embedding = embedder_->embed(raw.color, instance);
+	}
+}
+
+}  // namespace semloop

@@ -1,0 +1,68 @@
+#include <mrpt/poses/Lie/SO.h>
+#include <semloop/slam/LocalMap.h>
+
+#include <algorithm>
+
+namespace semloop
+{
+void LocalMapOptions::describe(OptionFields& f)
+{
+	f.number("length", length, 0.1, 1000, "path over which objects stay in the local map [m]");
+	f.number("metres_per_radian", metresPerRadian, 0, 100, "path that a turn counts as [m/rad]");
+}
+
+void LocalMap::advance(const mrpt::poses::CPose3D& T_previous_camera)
+{
+	const double angle = mrpt::poses::Lie::SO<3>::log(T_previous_camera.getRotationMatrix()).norm();
+	path_ += T_previous_camera.norm() + options_.metresPerRadian * angle;
+}
+
+bool LocalMap::contains(ObjectId id) const
+{
+	const auto it = lastSeen_.find(id);
+	return it != lastSeen_.end() && path_ - it->second <= options_.length;
+}
+
+void LocalMap::see(ObjectId id, bool isNew)
+{
+	if (isNew)
+		revisited_.erase(id);
+	else if (!contains(id))
+		revisited_.insert(id);
+	lastSeen_[id] = path_;
+}
+
+std::set<ObjectId> LocalMap::objects() const
+{
+	std::set<ObjectId> result;
+	for (const auto& entry : lastSeen_)
+		if (contains(entry.first)) result.insert(entry.first);
+	return result;
+}
+
+std::set<ObjectId> LocalMap::query() const
+{
+	std::set<ObjectId> result = objects();
+	for (const ObjectId id : revisited_) result.erase(id);
+	return result;
+}
+
+void LocalMap::merge(ObjectId kept, ObjectId absorbed)
+{
+	const auto it = lastSeen_.find(absorbed);
+	if (it != lastSeen_.end())
+	{
+		const auto known = lastSeen_.find(kept);
+		lastSeen_[kept] =
+			known == lastSeen_.end() ? it->second : std::max(known->second, it->second);
+	}
+	remove(absorbed);
+}
+
+void LocalMap::remove(ObjectId id)
+{
+	lastSeen_.erase(id);
+	revisited_.erase(id);
+}
+
+}  // namespace semloop

@@ -1,0 +1,53 @@
+#include <semloop/observations/UnixTime.h>
+#include <semloop/slam/RunResults.h>
+
+#include <nlohmann/json.hpp>
+
+namespace semloop
+{
+namespace
+{
+nlohmann::ordered_json toJson(const LoopRecord& record)
+{
+	const LoopVerdict& v = record.verdict;
+	nlohmann::ordered_json line;
+	line["frame"] = record.frame;
+	line["time"] = mrpt::Clock::toDouble(record.time);
+	line["decision"] = toString(v.decision);
+	line["reason"] = v.reason;
+	line["matches"] = v.matches;
+	if (v.decision == LoopVerdict::Decision::Accepted)
+	{
+		const auto T = v.T_target_query.getHomogeneousMatrixVal<mrpt::math::CMatrixDouble44>();
+		auto& rows = line["T_target_query"] = nlohmann::ordered_json::array();
+		for (int r = 0; r < 4; ++r)
+			for (int c = 0; c < 4; ++c) rows.push_back(T(r, c));
+	}
+	else
+		line["T_target_query"] = nullptr;
+	line["query_objects"] = v.queryObjects;
+	line["candidate_matches"] = v.candidateMatches;
+	line["matched_edge_share"] = v.matchedEdgeShare;
+	line["matching_score"] = v.matchingScore;
+	line["centre_rmse"] = v.centreRmse;
+	line["runner_up"] = v.runnerUp;
+	line["alignment_fitness"] = v.alignmentFitness;
+	line["alignment_rmse"] = v.alignmentRmse;
+	if (record.optimization)
+		line["optimization"] = {
+			{"initial_cost", record.optimization->initialCost},
+			{"final_cost", record.optimization->finalCost},
+			{"iterations", record.optimization->iterations},
+			{"message", record.optimization->message}};
+	return line;
+}
+}  // namespace
+
+std::string loopsAsJsonLines(const std::vector<LoopRecord>& loops)
+{
+	std::string text;
+	for (const LoopRecord& record : loops) text += toJson(record).dump() + "\n";
+	return text;
+}
+
+}  // namespace semloop

@@ -1,0 +1,153 @@
+#include <semloop/association/MaskedSurface.h>
+#include <semloop/slam/ObjectMapper.h>
+
+#include <utility>
+
+namespace semloop
+{
+namespace
+{
+using Embeddings = std::vector<std::vector<float>>;
+
+/** The detections as Eq. (3) wants them; owns what the items point to. */
+struct Detections
+{
+	std::vector<Embeddings> embeddings;
+	std::vector<AssociationItem> items;
+};
+
+Detections detectionsOf(
+	const RgbdFrame& frame, const CObservationInstances& observation,
+	const std::vector<TrackedInstance>& confirmed)
+{
+	Detections result;
+	result.embeddings.reserve(confirmed.size());
+	for (const TrackedInstance& tracked : confirmed)
+	{
+		const Instance& instance = observation.instances[tracked.instance];
+		auto& embeddings = result.embeddings.emplace_back();
+		if (!instance.embedding.empty()) embeddings.push_back(instance.embedding);
+		const MaskedSurface surface(instance.mask, frame.depth, frame.camera);
+		result.items.push_back(
+			{&instance.mask, &instance.labelScores, &embeddings, surface.centre()});
+	}
+	return result;
+}
+
+/** The objects in view; centre is that of the surface that should be visible, as a detection's is. */
+std::vector<AssociationItem> landmarksOf(
+	const CObjectMap& map, const std::vector<PredictedObject>& predicted,
+	const mrpt::poses::CPose3D& T_camera_world)
+{
+	std::vector<AssociationItem> result;
+	for (const PredictedObject& p : predicted)
+	{
+		const Object& object = map.object(p.id);
+		result.push_back(
+			{&p.prediction.mask, &object.labelScores, &object.embeddings,
+			 T_camera_world.composePoint(object.centre())});
+	}
+	return result;
+}
+}  // namespace
+
+ObjectMapper::ObjectMapper(
+	CObjectMap::Ptr map, std::shared_ptr<const Associator> associator,
+	std::shared_ptr<const MatchingCost> cost, double reassociationGate, StageTimings& timings)
+	: map_(std::move(map)),
+	  associator_(std::move(associator)),
+	  cost_(std::move(cost)),
+	  reassociationGate_(reassociationGate),
+	  timings_(timings)
+{
+}
+
+std::vector<ObjectObservation> ObjectMapper::update(
+	const RgbdFrame& frame, const CObservationInstances& observation,
+	const std::vector<TrackedInstance>& tracked, const mrpt::poses::CPose3D& T_world_camera,
+	const LocalMap& localMap)
+{
+	std::vector<TrackedInstance> confirmed;
+	for (const auto& t : tracked)
+		if (t.confirmed) confirmed.push_back(t);
+
+	std::vector<PredictedObject> predicted;
+	{
+		const StageTimings::Scope timing(timings_, "prediction");
+		predicted = map_->predict(frame.camera, T_world_camera, frame.depth);
+	}
+	const auto objects =
+		associate(frame, observation, confirmed, predicted, T_world_camera, localMap);
+
+	const StageTimings::Scope timing(timings_, "fusion");
+	std::vector<ObjectObservation> seen;
+	std::set<ObjectId> associated;
+	for (std::size_t k = 0; k < confirmed.size(); ++k)
+	{
+		const Instance& instance = observation.instances[confirmed[k].instance];
+		const auto observed = fuse(frame, instance, confirmed[k], objects[k], T_world_camera);
+		// Two tracks of one object, as when a mask was split: one measurement is enough.
+		if (observed && associated.insert(observed->object).second) seen.push_back(*observed);
+	}
+	map_->updateExistence(predicted, frame, associated);
+	return seen;
+}
+
+std::vector<std::optional<ObjectId>> ObjectMapper::associate(
+	const RgbdFrame& frame, const CObservationInstances& observation,
+	const std::vector<TrackedInstance>& confirmed, const std::vector<PredictedObject>& predicted,
+	const mrpt::poses::CPose3D& T_world_camera, const LocalMap& localMap) const
+{
+	const StageTimings::Scope timing(timings_, "association");
+	const Detections detections = detectionsOf(frame, observation, confirmed);
+	const auto landmarks = landmarksOf(*map_, predicted, -T_world_camera);
+
+	std::vector<std::optional<ObjectId>> result(confirmed.size());
+	for (const auto& [j, k] : associator_->associate(landmarks, detections.items).matches)
+	{
+		const ObjectId id = predicted[j].id;
+		if (localMap.contains(id) ||
+			cost_->cost(landmarks[j], detections.items[k]) <= reassociationGate_)
+			result[k] = id;
+	}
+	return result;
+}
+
+std::optional<ObjectObservation> ObjectMapper::fuse(
+	const RgbdFrame& frame, const Instance& instance, const TrackedInstance& tracked,
+	std::optional<ObjectId> object, const mrpt::poses::CPose3D& T_world_camera)
+{
+	ObjectObservation result;
+	result.instance = tracked.instance;
+	result.track = tracked.track;
+	if (object)
+	{
+		if (!map_->fuse(*object, frame, instance, T_world_camera)) return std::nullopt;
+		result.object = *object;
+	}
+	else
+	{
+		// A track whose object was not recognised in this frame is no second object.
+		if (objectOfTrack_.count(tracked.track)) return std::nullopt;
+		const auto id = map_->addObject(frame, instance, T_world_camera);
+		if (!id) return std::nullopt;
+		result.object = *id;
+		result.isNew = true;
+	}
+	objectOfTrack_[tracked.track] = result.object;
+	return result;
+}
+
+void ObjectMapper::merge(ObjectId kept, ObjectId absorbed)
+{
+	for (auto& entry : objectOfTrack_)
+		if (entry.second == absorbed) entry.second = kept;
+}
+
+void ObjectMapper::remove(ObjectId id)
+{
+	for (auto it = objectOfTrack_.begin(); it != objectOfTrack_.end();)
+		it = it->second == id ? objectOfTrack_.erase(it) : std::next(it);
+}
+
+}  // namespace semloop

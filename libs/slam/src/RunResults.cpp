@@ -1,0 +1,200 @@
+#include <mrpt/maps/CSimpleMap.h>
+#include <mrpt/obs/CSensoryFrame.h>
+#include <mrpt/opengl/COpenGLScene.h>
+#include <mrpt/opengl/CSetOfLines.h>
+#include <mrpt/opengl/stock_objects.h>
+#include <mrpt/poses/CPose3DPDFGaussian.h>
+#include <semloop/config/Error.h>
+#include <semloop/loop_closure/SemanticGraph.h>
+#include <semloop/object_map/ObjectFiles.h>
+#include <semloop/observations/CameraFrames.h>
+#include <semloop/pose_graph/G2oFile.h>
+#include <semloop/slam/RunResults.h>
+#include <sys/resource.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <fstream>
+#include <nlohmann/json.hpp>
+
+namespace fs = std::filesystem;
+
+namespace semloop
+{
+namespace
+{
+void writeText(const fs::path& path, const std::string& text)
+{
+	std::ofstream out(path, std::ios::binary);
+	out << text;
+	if (!out.flush()) throw InputError(path.string() + ": cannot be written; is the disk full?");
+}
+
+void requireWritten(bool ok, const fs::path& path)
+{
+	if (!ok) throw InputError(path.string() + ": cannot be written; is the disk full?");
+}
+
+/** A label as a part of a file name. */
+std::string fileNamePart(std::string label)
+{
+	std::replace_if(
+		label.begin(), label.end(), [](unsigned char c) { return !std::isalnum(c); }, '-');
+	return label;
+}
+
+void writeMeshes(const fs::path& folder, const SemanticSlam& slam)
+{
+	fs::remove_all(folder);
+	fs::create_directories(folder);
+	for (const auto& [id, object] : slam.map().objects())
+	{
+		if (object.observations < slam.options().minObservations) continue;
+		const std::string name =
+			std::to_string(id) + "_" + fileNamePart(slam.map().labelName(object)) + ".ply";
+		savePly((folder / name).string(), object.volume->mesh(), object.T_world_object);
+	}
+}
+
+/** Robot poses and observations, for observations2map and friends. */
+void writeSimpleMap(const fs::path& path, const SemanticSlam& slam)
+{
+	mrpt::maps::CSimpleMap map;
+	for (const auto& key : slam.keyFrames())
+	{
+		auto frame = mrpt::obs::CSensoryFrame::Create();
+		// Loaded, so that the file can be moved without the rawlog's image folder.
+		const auto scan = mrpt::obs::CObservation3DRangeScan::Create(*key.scan);
+		scan->load();
+		scan->rangeImage_forceResetExternalStorage();
+		if (scan->hasIntensityImage) scan->intensityImage.forceLoad();
+		frame->insert(scan);
+		frame->insert(key.instances);
+		const auto pose = mrpt::poses::CPose3DPDFGaussian::Create();
+		pose->mean = slam.poseGraph().pose(NodeId::camera(key.frame)) +
+					 (-robotFromCamera(key.scan->sensorPose));
+		map.insert(pose, frame);
+	}
+	requireWritten(map.saveToFile(path.string()), path);
+}
+
+mrpt::opengl::CSetOfLines::Ptr pathLine(
+	const Trajectory& trajectory, const mrpt::img::TColor& color)
+{
+	auto line = mrpt::opengl::CSetOfLines::Create();
+	line->setColor_u8(color);
+	line->setLineWidth(2);
+	for (std::size_t i = 1; i < trajectory.size(); ++i)
+		line->appendLine(trajectory[i - 1].pose.translation(), trajectory[i].pose.translation());
+	return line;
+}
+
+void writeScene(const fs::path& path, const SemanticSlam& slam)
+{
+	mrpt::opengl::COpenGLScene scene;
+	auto objects = mrpt::opengl::CSetOfObjects::Create();
+	objects->setName("objects");
+	slam.map().getVisualizationInto(*objects);
+	scene.insert(objects);
+	auto estimated = pathLine(slam.trajectory(), {0, 90, 200});
+	estimated->setName("trajectory");
+	scene.insert(estimated);
+	auto odometry = pathLine(slam.odometryTrajectory(), {170, 170, 170});
+	odometry->setName("odometry");
+	scene.insert(odometry);
+	scene.insert(mrpt::opengl::stock_objects::CornerXYZ(0.3f));
+	requireWritten(scene.saveToFile(path.string()), path);
+}
+
+double peakMemoryMegabytes()
+{
+	rusage usage{};
+	getrusage(RUSAGE_SELF, &usage);
+	return double(usage.ru_maxrss) / 1024.0;
+}
+
+std::size_t countLoops(const SemanticSlam& slam, LoopVerdict::Decision decision)
+{
+	const auto& loops = slam.loops();
+	return std::size_t(std::count_if(
+		loops.begin(), loops.end(),
+		[&](const LoopRecord& r) { return r.verdict.decision == decision; }));
+}
+
+double pathLength(const Trajectory& trajectory)
+{
+	double length = 0;
+	for (std::size_t i = 1; i < trajectory.size(); ++i)
+		length += trajectory[i].pose.distanceTo(trajectory[i - 1].pose);
+	return length;
+}
+
+std::string summary(const SemanticSlam& slam, const RunInfo& info, const StageTimings& timings)
+{
+	nlohmann::ordered_json labels = nlohmann::ordered_json::object();
+	std::map<std::string, int> objectsOfLabel;
+	for (const auto& entry : slam.map().objects())
+		if (entry.second.observations >= slam.options().minObservations)
+			++objectsOfLabel[slam.map().labelName(entry.second)];
+	for (const auto& [label, count] : objectsOfLabel) labels[label] = count;
+
+	const auto stages = timings.summaries();
+	const auto meanOf = [&](const char* stage)
+	{
+		const auto it = stages.find(stage);
+		return it == stages.end()
+				   ? 0.0
+				   : it->second.total / double(std::max<std::size_t>(1, slam.frameCount()));
+	};
+
+	nlohmann::ordered_json json;
+	json["format"] = "semloop.summary/1";
+	json["rawlog"] = info.rawlog;
+	json["config"] = info.config;
+	json["ended_by"] = info.endedBy;
+	json["frames"] = slam.frameCount();
+	json["frames_segmented"] = slam.segmentedFrameCount();
+	json["frames_skipped"] = info.skippedFrames.size();
+	json["frames_lost"] = slam.lostFrameCount();
+	json["skipped"] = info.skippedFrames;
+	json["path_length_m"] = pathLength(slam.trajectory());
+	json["detections"] = slam.detectionCount();
+	json["objects"] = slam.map().objects().size();
+	json["objects_by_label"] = labels;
+	json["loops_tried"] = slam.loops().size();
+	json["loops_accepted"] = countLoops(slam, LoopVerdict::Decision::Accepted);
+	json["loops_ambiguous"] = countLoops(slam, LoopVerdict::Decision::Ambiguous);
+	json["graph_nodes"] = slam.poseGraph().nodes().size();
+	json["graph_edges"] = slam.poseGraph().edges().size();
+	json["wall_seconds"] = info.wallSeconds;
+	json["frames_per_second"] =
+		info.wallSeconds > 0 ? double(slam.frameCount()) / info.wallSeconds : 0.0;
+	json["odometry_ms_per_frame"] = meanOf("odometry");
+	// "frame" holds the odometry; reading, segmentation and rectification run beside it.
+	json["mapping_ms_per_frame"] = meanOf("frame") - meanOf("odometry");
+	json["front_end_ms_per_frame"] = meanOf("read") + meanOf("segmentation") + meanOf("rectify");
+	json["peak_memory_mb"] = peakMemoryMegabytes();
+	return json.dump(2) + "\n";
+}
+}  // namespace
+
+void writeRunResults(
+	const std::string& folder, const SemanticSlam& slam, const RunInfo& info,
+	const StageTimings& timings)
+{
+	const fs::path out(folder);
+	writeTumTrajectory((out / "trajectory.tum").string(), slam.trajectory());
+	writeTumTrajectory((out / "trajectory_odometry.tum").string(), slam.odometryTrajectory());
+	SemanticGraph::fromMap(slam.map(), slam.options().minObservations)
+		.save((out / "objects.json").string());
+	saveObjectMap((out / "map.objmap").string(), slam.map());
+	writeMeshes(out / "objects", slam);
+	writeSimpleMap(out / "map.simplemap", slam);
+	writeScene(out / "scene.3Dscene", slam);
+	writeG2o((out / "pose_graph.g2o").string(), slam.poseGraph());
+	writeText(out / "loops.jsonl", loopsAsJsonLines(slam.loops()));
+	timings.writeCsv((out / "timings.csv").string());
+	writeText(out / "summary.json", summary(slam, info, timings));
+}
+
+}  // namespace semloop

@@ -1,0 +1,215 @@
+#include <mrpt/obs/CObservationIMU.h>
+#include <mrpt/system/datetime.h>
+#include <semloop/config/Error.h>
+#include <semloop/slam/SemanticSlam.h>
+
+#include <cmath>
+#include <utility>
+
+using mrpt::poses::CPose3D;
+
+namespace semloop
+{
+SemanticSlam::SemanticSlam(
+	const mrpt::config::CConfigFileBase& config, mrpt::system::COutputLogger& logger,
+	StageTimings& timings)
+	: logger_(logger), timings_(timings), map_(CObjectMap::Create())
+{
+	makeModules(config);
+	makeMap(config);
+}
+
+void SemanticSlam::process(const SlamFrame& input)
+{
+	const StageTimings::Scope timing(timings_, "frame");
+	for (const auto& observation : input.before) observe(*observation);
+	const RgbdFrame& frame = input.rgbd;
+	if (frameCount() == 0) placeFirstCamera(frame);
+
+	// Off-the-shelf RGB-D odometry, and the camera-camera constraint of Eq. (7).
+	OdometryEstimate odometry;
+	{
+		const StageTimings::Scope odometryTiming(timings_, "odometry");
+		odometry = odometry_->track(frame);
+	}
+	addCamera(frame, odometry);
+	localMap_.advance(odometry.T_previous_camera);
+	T_segmented_camera_ = T_segmented_camera_ + odometry.T_previous_camera;
+	if (!input.instances) return;
+	const CObservationInstances& instances = *input.instances;
+	adoptLabels(instances);
+
+	// Sec. III-B: multi-frame instance tracking filters out perceptual noise.
+	std::vector<TrackedInstance> tracked;
+	{
+		const StageTimings::Scope trackingTiming(timings_, "tracking");
+		tracked = tracker_->track(frame, instances, T_segmented_camera_);
+	}
+	T_segmented_camera_ = CPose3D();
+
+	// Sec. III-B, Eq. (1)-(3): association with the map's objects, fusion into their volumes.
+	const auto seen = mapper_->update(frame, instances, tracked, cameraPose(), localMap_);
+	addObservations(seen);
+	map_->markCovisible(localMap_.objects());
+	keepKeyFrame(input);
+
+	++segmentedFrames_;
+	detections_ += instances.instances.size();
+	if (segmentedFrames_ % std::size_t(options_.maintainEveryFrames) == 0) maintainMap();
+	// Sec. III-C: graph-based loop closure.
+	if (segmentedFrames_ % std::size_t(options_.loopEveryFrames) == 0) closeLoop(frame.time);
+}
+
+void SemanticSlam::observe(const mrpt::obs::CObservation& observation)
+{
+	odometry_->observe(observation);
+	const auto* imu = dynamic_cast<const mrpt::obs::CObservationIMU*>(&observation);
+	if (!imu || frameCount() > 0 || !imu->has(mrpt::obs::IMU_X_ACC)) return;
+	// At rest an accelerometer measures what holds it up.
+	const mrpt::math::TVector3D acceleration(
+		imu->get(mrpt::obs::IMU_X_ACC), imu->get(mrpt::obs::IMU_Y_ACC),
+		imu->get(mrpt::obs::IMU_Z_ACC));
+	up_ = up_.value_or(mrpt::math::TVector3D(0, 0, 0)) + imu->sensorPose.rotateVector(acceleration);
+}
+
+void SemanticSlam::adoptLabels(const CObservationInstances& instances)
+{
+	const LabelSet& labels = instances.labels;
+	if (map_->labels() == labels) return;
+	if (map_->labels().size() > 0)
+		throw InputError(
+			"instances at " + mrpt::system::dateTimeToString(instances.timestamp) +
+			": their label set is not that of the instances before; segment the rawlog again with "
+			"one network");
+	map_->setLabels(labels);
+	const std::string& file = options_.confusionMatrix;
+	ConfusionMatrix confusion = file.empty() ? ConfusionMatrix(labels, options_.confusionCorrect)
+											 : ConfusionMatrix::load(file);
+	if (!(confusion.labels() == labels))
+		throw InputError(file + ": its labels are not those of the instances; learn it anew");
+	matchingCost_->setConfusionMatrix(std::move(confusion));
+}
+
+void SemanticSlam::placeFirstCamera(const RgbdFrame& frame)
+{
+	CPose3D T_world_robot;
+	if (options_.level && up_ && up_->norm() > 0)
+	{
+		// Roll and pitch that bring the measured up direction to +z; the heading stays.
+		const double roll = std::atan2(up_->y, up_->z);
+		const double pitch = -std::atan2(up_->x, std::hypot(up_->y, up_->z));
+		T_world_robot = CPose3D(0, 0, 0, 0, pitch, roll);
+	}
+	T_world_firstCamera_ = T_world_robot + frame.T_robot_camera;
+	T_world_odom_ = T_world_firstCamera_;
+}
+
+void SemanticSlam::addCamera(const RgbdFrame& frame, const OdometryEstimate& odometry)
+{
+	if (odometry.status == OdometryEstimate::Status::Lost)
+	{
+		++lostFrames_;
+		logger_.logFmt(
+			mrpt::system::LVL_WARN, "frame %zu: odometry lost: %s", frameCount(),
+			odometry.reason.c_str());
+	}
+	T_odom_camera_ = odometry.T_odom_camera;
+	odometryTrajectory_.push_back({frame.time, T_world_firstCamera_ + T_odom_camera_});
+
+	poseGraph_->setNode(cameraNode(), cameraPose());
+	if (frameCount() == 1) return;
+	PoseEdge edge;
+	edge.kind = PoseEdge::Kind::Odometry;
+	edge.a = NodeId::camera(frameCount() - 2);
+	edge.b = cameraNode();
+	edge.Z_a_b = odometry.T_previous_camera;
+	edge.information = odometry.covariance.inverse();
+	edge.information = 0.5 * (edge.information + edge.information.transpose()).eval();
+	poseGraph_->addEdge(edge);
+}
+
+void SemanticSlam::addObservations(const std::vector<ObjectObservation>& seen)
+{
+	Matrix6 information = Matrix6::Identity();
+	information.topLeftCorner<3, 3>() /= options_.observationSigma * options_.observationSigma;
+	information.bottomRightCorner<3, 3>() /=
+		options_.observationSigmaAngle * options_.observationSigmaAngle;
+
+	for (const ObjectObservation& observation : seen)
+	{
+		const NodeId node = NodeId::object(observation.object);
+		const CPose3D& T_world_object = map_->object(observation.object).T_world_object;
+		if (!poseGraph_->has(node)) poseGraph_->setNode(node, T_world_object);
+		localMap_.see(observation.object, observation.isNew);
+		// Against an object of another time this would measure the drift as zero.
+		if (localMap_.isRevisited(observation.object)) continue;
+
+		PoseEdge edge;  // Eq. (7), e_oc
+		edge.kind = PoseEdge::Kind::Observation;
+		edge.a = node;
+		edge.b = cameraNode();
+		edge.Z_a_b = (-T_world_object) + cameraPose();
+		edge.information = information;
+		poseGraph_->addEdge(edge);
+	}
+}
+
+void SemanticSlam::keepKeyFrame(const SlamFrame& input)
+{
+	if (!keyFrames_.empty() && localMap_.path() - pathAtKeyFrame_ < options_.keyPoseDistance)
+		return;
+	pathAtKeyFrame_ = localMap_.path();
+	keyFrames_.push_back({frameCount() - 1, input.scan, input.instances});
+}
+
+void SemanticSlam::maintainMap()
+{
+	const StageTimings::Scope timing(timings_, "maintenance");
+	for (const ObjectId id : map_->removeUnsupported())
+	{
+		poseGraph_->removeObject(id);
+		localMap_.remove(id);
+		mapper_->remove(id);
+	}
+	loopCloser_->mergeDuplicates(localMap_, *mapper_);
+}
+
+void SemanticSlam::closeLoop(mrpt::Clock::time_point time)
+{
+	LoopRecord record;
+	record.frame = frameCount() - 1;
+	record.time = time;
+	record.verdict = loopCloser_->detect(localMap_);
+	if (record.verdict.decision == LoopVerdict::Decision::Accepted)
+	{
+		record.optimization = loopCloser_->close(record.verdict, localMap_, *mapper_);
+		followOptimizedCamera();
+		logger_.logFmt(
+			mrpt::system::LVL_INFO, "frame %zu: loop closed: %s", record.frame,
+			record.verdict.reason.c_str());
+	}
+	loops_.push_back(std::move(record));
+}
+
+void SemanticSlam::followOptimizedCamera()
+{
+	T_world_odom_ = poseGraph_->pose(cameraNode()) + (-T_odom_camera_);
+}
+
+void SemanticSlam::finish()
+{
+	if (frameCount() == 0) return;
+	loopCloser_->optimize();
+	followOptimizedCamera();
+	maintainMap();
+}
+
+Trajectory SemanticSlam::trajectory() const
+{
+	Trajectory result;
+	for (std::size_t i = 0; i < frameCount(); ++i)
+		result.push_back({odometryTrajectory_[i].time, poseGraph_->pose(NodeId::camera(i))});
+	return result;
+}
+
+}  // namespace semloop

@@ -1,1 +1,0 @@
-#include <semloop/pose_graph/PoseGraph.h>

@@ -1,0 +1,176 @@
+#include <gtest/gtest.h>
+#include <semloop/config/Error.h>
+#include <semloop/evaluation/TrajectoryError.h>
+#include <semloop/slam/Configuration.h>
+#include <semloop/slam/RunResults.h>
+
+#include <nlohmann/json.hpp>
+
+#include "SyntheticRun.h"
+
+using namespace semloop;
+using namespace semloop::synthetic;
+
+namespace
+{
+struct Run
+{
+	mrpt::system::COutputLogger logger;
+	StageTimings timings;
+	std::unique_ptr<SemanticSlam> slam;
+};
+
+std::unique_ptr<Run> mapRawlog(
+	const std::string& rawlog, const mrpt::config::CConfigFileBase& config, int framesAhead)
+{
+	auto run = std::make_unique<Run>();
+	run->logger.logging_enable_console_output = false;
+	run->slam = std::make_unique<SemanticSlam>(config, run->logger, run->timings);
+	FrontEnd front = makeFrontEnd(config);
+	FrameSource source(rawlog, front.segmenter, front.embedder, framesAhead, run->timings);
+	while (auto frame = source.next()) run->slam->process(*frame);
+	run->slam->finish();
+	return run;
+}
+
+double absoluteError(const Trajectory& estimate, const std::string& truth)
+{
+	return absoluteTrajectoryError(estimate, readTumTrajectory(truth)).rmse;
+}
+
+/** What must not depend on time or machine. */
+std::string fingerprint(const SemanticSlam& slam, const TemporaryFolder& folder)
+{
+	writeTumTrajectory(folder.file("t.tum"), slam.trajectory());
+	SemanticGraph::fromMap(slam.map()).save(folder.file("g.json"));
+	return readBytes(folder.file("t.tum")) + readBytes(folder.file("g.json")) +
+		   loopsAsJsonLines(slam.loops());
+}
+}  // namespace
+
+TEST(SemanticSlam, MapsEveryObjectOfARoomOnceWithoutDrift)
+{
+	const TemporaryFolder folder;
+	RunOptions options;
+	options.degrees = 300;
+	const RecordedRun recorded = recordRun(folder, options);
+	const auto run = mapRawlog(recorded.rawlog, runConfiguration(recorded, 0), 2);
+	EXPECT_EQ(run->slam->frameCount(), std::size_t(recorded.frames));
+	EXPECT_LT(absoluteError(run->slam->trajectory(), recorded.truth), 1e-3);
+
+	// Object and truth meet where the world begins: at the first camera, levelled.
+	const CPose3D T_truth_world = cameraOnCircle(0) + (-run->slam->trajectory().front().pose);
+	const Scene scene = roomScene(options.objects);
+	std::map<int, int> found;
+	for (const auto& [id, object] : run->slam->map().objects())
+	{
+		const auto centre = T_truth_world.composePoint(object.centre());
+		int nearest = 0;
+		double distance = 1e9;
+		const auto look = [&](const TPoint3D& at, int objectId)
+		{
+			if ((at - centre).norm() < distance)
+				distance = (at - centre).norm(), nearest = objectId;
+		};
+		for (const auto& s : scene.spheres) look(s.centre, s.id);
+		for (const auto& b : scene.boxes) look(b.T_world_box.translation(), b.id);
+		// One side only is ever seen, so the centre is off by up to half the size.
+		EXPECT_LT(distance, 0.2) << "object " << id;
+		EXPECT_EQ(object.label(), labelOf(nearest));
+		++found[nearest];
+	}
+	EXPECT_GE(found.size(), 12u);
+	for (const auto& [id, count] : found) EXPECT_EQ(count, 1) << "object " << id;
+}
+
+TEST(SemanticSlam, ALoopClosureTakesOutMostOfTheDrift)
+{
+	const TemporaryFolder folder;
+	const RecordedRun recorded = recordRun(folder);
+	const auto run = mapRawlog(recorded.rawlog, runConfiguration(recorded, 0.8), 2);
+	std::size_t accepted = 0;
+	for (const auto& record : run->slam->loops())
+		accepted += record.verdict.decision == LoopVerdict::Decision::Accepted;
+	EXPECT_GE(accepted, 1u);
+	const double before = absoluteError(run->slam->odometryTrajectory(), recorded.truth);
+	const double after = absoluteError(run->slam->trajectory(), recorded.truth);
+	EXPECT_GT(before, 0.1);
+	EXPECT_LT(after, 0.5 * before);
+}
+
+TEST(SemanticSlam, NoLoopIsClosedWhereNoneIs)
+{
+	const TemporaryFolder folder;
+	RunOptions options;
+	options.degrees = 280;
+	const RecordedRun recorded = recordRun(folder, options);
+	const auto run = mapRawlog(recorded.rawlog, runConfiguration(recorded, 0.3), 2);
+	for (const auto& record : run->slam->loops())
+		EXPECT_NE(record.verdict.decision, LoopVerdict::Decision::Accepted)
+			<< record.verdict.reason;
+	EXPECT_GT(run->slam->loops().size(), 0u);
+}
+
+TEST(SemanticSlam, TheSameInputGivesTheSameBytesWithAndWithoutAThread)
+{
+	const TemporaryFolder folder;
+	const RecordedRun recorded = recordRun(folder);
+	const auto config = runConfiguration(recorded, 0.8);
+	const auto first = mapRawlog(recorded.rawlog, config, 0);
+	const auto second = mapRawlog(recorded.rawlog, config, 0);
+	const auto threaded = mapRawlog(recorded.rawlog, config, 4);
+	const std::string expected = fingerprint(*first->slam, folder);
+	EXPECT_GT(expected.size(), 1000u);
+	EXPECT_EQ(fingerprint(*second->slam, folder), expected);
+	EXPECT_EQ(fingerprint(*threaded->slam, folder), expected);
+}
+
+TEST(SemanticSlam, EveryFileOfARunIsWritten)
+{
+	const TemporaryFolder folder;
+	RunOptions options;
+	options.degrees = 60;
+	const RecordedRun recorded = recordRun(folder, options);
+	const auto run = mapRawlog(recorded.rawlog, runConfiguration(recorded, 0), 0);
+	writeRunResults(folder.path().string(), *run->slam, RunInfo(), run->timings);
+	for (const char* name :
+		 {"trajectory.tum", "trajectory_odometry.tum", "objects.json", "map.objmap",
+		  "map.simplemap", "scene.3Dscene", "pose_graph.g2o", "loops.jsonl", "timings.csv",
+		  "summary.json"})
+		EXPECT_FALSE(readBytes(folder.file(name)).empty()) << name;
+	EXPECT_FALSE(std::filesystem::is_empty(folder.path() / "objects"));
+	const auto summary = nlohmann::json::parse(readBytes(folder.file("summary.json")));
+	EXPECT_EQ(summary["frames"], recorded.frames);
+	EXPECT_EQ(summary["frames_skipped"], 0);
+	EXPECT_EQ(
+		readTumTrajectory(folder.file("trajectory.tum")).size(), std::size_t(recorded.frames));
+}
+
+TEST(SemanticSlam, ARunWithoutAFrameWritesEmptyResults)
+{
+	const TemporaryFolder folder;
+	RawlogWriter(folder.file("empty.rawlog")).close();
+	RecordedRun recorded;
+	recorded.rawlog = folder.file("empty.rawlog");
+	recorded.truth = folder.write("truth.tum", "1000 0 0 0 0 0 0 1\n");
+	const auto run = mapRawlog(recorded.rawlog, runConfiguration(recorded, 0), 0);
+	writeRunResults(folder.path().string(), *run->slam, RunInfo(), run->timings);
+	EXPECT_EQ(run->slam->frameCount(), 0u);
+	EXPECT_TRUE(run->slam->map().isEmpty());
+}
+
+TEST(SemanticSlam, AnUnregisteredModuleAndAnUnknownSectionStopWithTheChoices)
+{
+	const TemporaryFolder folder;
+	StageTimings timings;
+	mrpt::system::COutputLogger logger;
+	mrpt::config::CConfigFileMemory config;
+	config.write("modules", "odometry", "semloop::Teleporter");
+	const auto module = messageOf<UsageError>([&] { SemanticSlam slam(config, logger, timings); });
+	EXPECT_NE(module.find("semloop::RecordedOdometry"), std::string::npos) << module;
+
+	mrpt::config::CConfigFileMemory typo;
+	typo.write("tracing", "gate", 0.5);
+	const auto section = messageOf<UsageError>([&] { SemanticSlam slam(typo, logger, timings); });
+	EXPECT_NE(section.find("[tracing]"), std::string::npos) << section;
+}
