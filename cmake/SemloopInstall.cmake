@@ -8,3 +8,4 @@ write_basic_package_version_file(${PROJECT_BINARY_DIR}/semloop-config-version.cm
 install(FILES ${PROJECT_BINARY_DIR}/semloop-config.cmake
   ${PROJECT_BINARY_DIR}/semloop-config-version.cmake DESTINATION ${package_dir})
 install(DIRECTORY ${PROJECT_SOURCE_DIR}/config_ini DESTINATION ${CMAKE_INSTALL_DATADIR}/semloop)
+install(FILES ${PROJECT_SOURCE_DIR}/LICENSE DESTINATION ${CMAKE_INSTALL_DOCDIR})

@@ -57,6 +57,7 @@ int runApplication(const std::string& name, const std::function<int()>& body)
 bool parseArguments(TCLAP::CmdLine& commandLine, int argc, char** argv)
 {
 	ThrowingOutput output;
+	delete commandLine.getOutput();  // TCLAP forgets its own when another one is set
 	commandLine.setOutput(&output);
 	return commandLine.parse(argc, const_cast<const char**>(argv));
 }

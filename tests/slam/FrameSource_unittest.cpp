@@ -8,7 +8,7 @@
 using namespace semloop;
 using namespace semloop::synthetic;
 
-namespace
+namespace semloop
 {
 /** Says that nothing was segmented. */
 class NoSegmenter : public Segmenter
@@ -18,7 +18,12 @@ public:
 	void configure(const mrpt::config::CConfigFileBase&, const std::string&) override {}
 	CObservationInstances::Ptr segment(const RgbdFrame&) override { return nullptr; }
 };
+}  // namespace semloop
 
+IMPLEMENTS_MRPT_OBJECT(NoSegmenter, semloop::Segmenter, semloop)
+
+namespace
+{
 struct Collected
 {
 	std::vector<SlamFrame> frames;
@@ -53,8 +58,6 @@ View smallView(double degrees)
 	return renderView(roomScene(8), smallCamera(), cameraOnCircle(degrees));
 }
 }  // namespace
-
-IMPLEMENTS_MRPT_OBJECT(NoSegmenter, Segmenter, semloop)
 
 class FrameSourceTest : public testing::TestWithParam<int>
 {

@@ -191,12 +191,7 @@ void FrameSource::segment(const RgbdFrame& raw, SlamFrame& frame)
 	}
 	else
 		frame.instances = segmenter_->segment(raw);
-	if (frame.instances && embedder_)
-	{
-		for (Instance& instance : frame.instances->instances)
-			if (instance.embedding.empty())
-				instance.embedding = embedder_->embed(raw.color, instance);
-	}
+	if (frame.instances && embedder_) addEmbeddings(*embedder_, raw.color, *frame.instances);
 }
 
 }  // namespace semloop

@@ -76,13 +76,14 @@ OptimizationReport LoopCloser::optimize()
 
 void LoopCloser::mergeDuplicates(LocalMap& localMap, ObjectMapper& mapper)
 {
-	for (const auto& [kept, absorbed] : map_->findDuplicates())
-	{
-		map_->mergeObjects(kept, absorbed);
-		poseGraph_->removeObject(absorbed);
-		localMap.merge(kept, absorbed);
-		mapper.merge(kept, absorbed);
-	}
+	for (auto pairs = map_->findDuplicates(); !pairs.empty(); pairs = map_->findDuplicates())
+		for (const auto& [kept, absorbed] : pairs)
+		{
+			map_->mergeObjects(kept, absorbed);
+			poseGraph_->removeObject(absorbed);
+			localMap.merge(kept, absorbed);
+			mapper.merge(kept, absorbed);
+		}
 }
 
 }  // namespace semloop

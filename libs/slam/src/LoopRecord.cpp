@@ -16,6 +16,13 @@ nlohmann::ordered_json toJson(const LoopRecord& record)
 	line["decision"] = toString(v.decision);
 	line["reason"] = v.reason;
 	line["matches"] = v.matches;
+	auto& matched = line["matched_objects"] = nlohmann::ordered_json::array();
+	for (const MatchedObjects& m : record.matched)
+		matched.push_back(
+			{{"query_label", m.queryLabel},
+			 {"target_label", m.targetLabel},
+			 {"query_centre", {m.queryCentre.x, m.queryCentre.y, m.queryCentre.z}},
+			 {"target_centre", {m.targetCentre.x, m.targetCentre.y, m.targetCentre.z}}});
 	if (v.decision == LoopVerdict::Decision::Accepted)
 	{
 		const auto T = v.T_target_query.getHomogeneousMatrixVal<mrpt::math::CMatrixDouble44>();

@@ -89,7 +89,11 @@ std::vector<ObjectObservation> ObjectMapper::update(
 		// Two tracks of one object, as when a mask was split: one measurement is enough.
 		if (observed && associated.insert(observed->object).second) seen.push_back(*observed);
 	}
-	map_->updateExistence(predicted, frame, associated);
+	// Where the drift has grown since an object was seen, looking through its place proves nothing.
+	std::vector<PredictedObject> expected;
+	for (auto& p : predicted)
+		if (localMap.isOfThisTime(p.id)) expected.push_back(std::move(p));
+	map_->updateExistence(expected, frame, associated);
 	return seen;
 }
 

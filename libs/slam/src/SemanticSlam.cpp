@@ -174,12 +174,26 @@ void SemanticSlam::maintainMap()
 	loopCloser_->mergeDuplicates(localMap_, *mapper_);
 }
 
+std::vector<MatchedObjects> SemanticSlam::matchedObjects(const LoopVerdict& verdict) const
+{
+	std::vector<MatchedObjects> result;
+	for (const auto& match : verdict.matches)
+	{
+		const Object &query = map_->object(match.first), &target = map_->object(match.second);
+		result.push_back(
+			{query.id, target.id, map_->labelName(query), map_->labelName(target), query.centre(),
+			 target.centre()});
+	}
+	return result;
+}
+
 void SemanticSlam::closeLoop(mrpt::Clock::time_point time)
 {
 	LoopRecord record;
 	record.frame = frameCount() - 1;
 	record.time = time;
 	record.verdict = loopCloser_->detect(localMap_);
+	record.matched = matchedObjects(record.verdict);
 	if (record.verdict.decision == LoopVerdict::Decision::Accepted)
 	{
 		record.optimization = loopCloser_->close(record.verdict, localMap_, *mapper_);

@@ -17,7 +17,7 @@ struct InstanceTrackerOptions : Options
 {
 	int minTrackedFrames = 3;    //!< a track counts from this many observations on
 	int maxMissedFrames = 5;     //!< segmented frames that a track survives unseen
-	double gate = 0.8;           //!< largest matching cost of an association
+	double gate = 0.6;           //!< largest matching cost of an association
 	double minConfidence = 0.4;  //!< weaker detections are not looked at
 
 protected:

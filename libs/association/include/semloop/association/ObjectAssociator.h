@@ -11,7 +11,7 @@ namespace semloop
 {
 struct ObjectAssociatorOptions : Options
 {
-	double gate = 0.8;  //!< largest matching cost of a match
+	double gate = 0.55;  //!< largest matching cost of a match
 
 protected:
 	void describe(OptionFields& fields) override;

@@ -24,15 +24,15 @@ struct LoopVerdict
 	Decision decision = Decision::Rejected;
 	std::string reason;  //!< one line for a person, with the numbers behind it
 	std::vector<std::pair<ObjectId, ObjectId>> matches;  //!< the consistent ones, query id first
-	mrpt::poses::CPose3D T_target_query;  //!< meaningful when accepted
-	std::size_t queryObjects = 0;  //!< objects in the local map
-	std::size_t candidateMatches = 0;  //!< matches before verification
+	mrpt::poses::CPose3D T_target_query;                 //!< meaningful when accepted
+	std::size_t queryObjects = 0;                        //!< objects in the local map
+	std::size_t candidateMatches = 0;                    //!< matches before verification
 	double matchedEdgeShare = 0.0;  //!< matched edges / edges of the query graph, [0, 1]
-	double matchingScore = 0.0;  //!< of the graph matcher
-	double centreRmse = 0.0;  //!< of the matched centres under T_target_query [m]
-	double runnerUp = 0.0;  //!< inliers of the best rival / ours, in [0, 1]
+	double matchingScore = 0.0;     //!< of the graph matcher
+	double centreRmse = 0.0;        //!< of the matched centres under T_target_query [m]
+	double runnerUp = 0.0;          //!< inliers of the best rival / ours, in [0, 1]
 	double alignmentFitness = 0.0;  //!< share of aligned surface points, [0, 1]
-	double alignmentRmse = 0.0;  //!< of the aligned surfaces [m]
+	double alignmentRmse = 0.0;     //!< of the aligned surfaces [m]
 };
 
 /** Recognises the local map (query) in the global map (target); both are objects of one map. */
@@ -40,7 +40,7 @@ class LoopDetector : public mrpt::rtti::CObject
 {
 	DEFINE_VIRTUAL_MRPT_OBJECT(LoopDetector)
 
-   public:
+public:
 	virtual void configure(
 		const mrpt::config::CConfigFileBase& config, const std::string& section) = 0;
 	virtual LoopVerdict detect(

@@ -17,9 +17,9 @@ struct GraphVertex
 {
 	ObjectId id = 0;
 	std::string label;
-	mrpt::math::TPoint3D position;  //!< centre, in the graph's world [m]
-	std::map<std::string, double> labelScores;  //!< empty: the label is certain
-	std::vector<std::vector<float>> embeddings;  //!< each of unit length; may be empty
+	mrpt::math::TPoint3D position;                //!< centre, in the graph's world [m]
+	std::map<std::string, double> labelScores;    //!< empty: the label is certain
+	std::vector<std::vector<float>> embeddings;   //!< each of unit length; may be empty
 	std::optional<mrpt::math::TVector3D> extent;  //!< [m]
 	int observations = 0;
 };
@@ -40,6 +40,9 @@ struct SemanticGraph
 
 	/** Format semloop.graph/1 (doc/file-formats.md). Throws InputError naming file and place. */
 	static SemanticGraph load(const std::string& path);
+	/** Objects by id, numbers rounded to 1e-6; of several embeddings the direction of their mean.
+	 *  Throws InputError when a number is not finite, an id is repeated, or the file cannot be
+	 *  written. */
 	void save(const std::string& path) const;
 };
 

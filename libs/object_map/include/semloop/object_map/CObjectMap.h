@@ -16,26 +16,31 @@ namespace semloop
 /** How objects are built. */
 struct ObjectMapInsertionOptions : Options
 {
-	double voxelsPerSide = 64;  //!< voxel size = size of the object when first seen / this ...
+	double voxelsPerSide = 64;	  //!< voxel size = size of the object when first seen / this ...
 	double minVoxelSize = 0.005;  //!< ... clipped to this range [m]
-	double maxVoxelSize = 0.03;  //!< [m]
+	double maxVoxelSize = 0.03;	  //!< [m]
 	double truncationVoxels = 4;  //!< truncation = this * voxel size
-	double maxDepth = 4.0;  //!< further measurements are not fused [m]
-	int maxEmbeddings = 10;  //!< |E_j| at most
-	double gate = 0.8;  //!< largest matching cost when the map itself associates (insertObservation)
+	double maxDepth = 4.0;		  //!< further measurements are not fused [m]
+	int minPixels = 64;			  //!< a mask needs this many pixels of valid depth on the object
+	int maxEmbeddings = 10;		  //!< |E_j| at most
+	double gate =
+		0.8;  //!< largest matching cost when the map itself associates (insertObservation)
 
-   protected:
+ protected:
 	void describe(OptionFields& fields) override;
 };
 
 /** When objects are dropped or united. */
 struct ObjectMapMaintenanceOptions : Options
 {
-	double minExistence = 0.1;  //!< below: the object is removed
-	double mergeIou = 0.3;  //!< boxes of two objects of compatible label that overlap more: one object
-	double mergeContainment = 0.7;  //!< same, for the share of the smaller box inside the larger
+	double minExistence = 0.1;	//!< below: the object is removed
+	double mergeIou =
+		0.3;  //!< boxes of two objects of compatible label that overlap more: one object
+	double mergeSurfaceOverlap = 0.4;  //!< same, for the share of the smaller surface on the larger
+	/** Labels are compatible when the best ones agree, or sum_l min(l_i, l_j) is more than this. */
+	double mergeLabelOverlap = 0.3;
 
-   protected:
+ protected:
 	void describe(OptionFields& fields) override;
 };
 
@@ -44,18 +49,22 @@ struct PredictedObject
 {
 	ObjectId id = 0;
 	ObjectPrediction prediction;  //!< occluded parts already removed
-	double visibleShare = 1.0;  //!< visible pixels / pixels without other objects and measured depth
+	double visibleShare =
+		1.0;  //!< visible pixels / pixels without other objects and measured depth, > 0
 };
 
 /** The object map as an MRPT metric map: one TSDF volume per object.
  *
  *  Frames: the world is MRPT's (z up); insertObservation() takes robot poses as every metric map
- *  does. The semantic front end calls addObject() / fuse() with camera poses (optical frame). */
+ *  does. The semantic front end calls addObject() / fuse() with camera poses (optical frame).
+ *
+ *  Copies are cheap: they share the volumes until one of them writes. Two copies must not be
+ *  changed from two threads at once. */
 class CObjectMap : public mrpt::maps::CMetricMap
 {
 	DEFINE_SERIALIZABLE(CObjectMap, semloop)
 
-   public:
+ public:
 	CObjectMap() = default;
 
 	ObjectMapInsertionOptions insertionOptions;
@@ -69,11 +78,15 @@ class CObjectMap : public mrpt::maps::CMetricMap
 	void setLabels(const LabelSet& labels) { labels_ = labels; }
 	const std::string& labelName(const Object& object) const;
 
-	/** A new object from one rectified detection; empty when its mask has too little valid depth. */
+	/** A new object from one rectified detection; empty when its mask has too little valid depth.
+	 *  Its frame sits at the centre of the depth seen, axes parallel to the world's. Throws InputError
+	 *  when the mask does not fit the frame, or a label is not in labels(). */
 	std::optional<ObjectId> addObject(
-		const RgbdFrame& frame, const Instance& instance, const mrpt::poses::CPose3D& T_world_camera);
+		const RgbdFrame& frame, const Instance& instance,
+		const mrpt::poses::CPose3D& T_world_camera);
 	/** Fuses an associated detection into V_j, l_j and E_j. False, and nothing changed, when its mask
-	 *  has too little valid depth. */
+	 *  has too little valid depth. Throws as addObject() does, also when the embedding's size differs
+	 *  from the object's, and std::out_of_range for an id that the map does not have. */
 	bool fuse(
 		ObjectId id, const RgbdFrame& frame, const Instance& instance,
 		const mrpt::poses::CPose3D& T_world_camera);
@@ -81,13 +94,15 @@ class CObjectMap : public mrpt::maps::CMetricMap
 	void markCovisible(const std::set<ObjectId>& objects);
 
 	/** Predicted masks m_j of the objects in view, nearest first. An object hides what is behind it,
-	 *  and so does what the depth image (same camera, may be empty) measures in front of it. */
+	 *  and so does what the depth image (same camera, may be empty) measures in front of it: by more
+	 *  than max(truncation, 3 cm). Objects with nothing left to see are not in the list. */
 	std::vector<PredictedObject> predict(
 		const mrpt::img::TCamera& camera, const mrpt::poses::CPose3D& T_world_camera,
 		const cv::Mat& depth = {}) const;
 
 	/** Lowers the existence of objects that the depth image looks through, and raises that of the
-	 *  associated ones. */
+	 *  associated ones; log-odds, as in occupancy grids (H. Moravec and A. Elfes, ICRA 1985). An object
+	 *  that was only not detected, the depth being where it should, stays as it is. */
 	void updateExistence(
 		const std::vector<PredictedObject>& predicted, const RgbdFrame& frame,
 		const std::set<ObjectId>& associated);
@@ -101,19 +116,30 @@ class CObjectMap : public mrpt::maps::CMetricMap
 	void moveObjects(const std::map<ObjectId, mrpt::poses::CPose3D>& poses);
 	/** Puts `absorbed` into `kept` where both stand now, and removes it. */
 	void mergeObjects(ObjectId kept, ObjectId absorbed);
-	/** Pairs (kept = older id, absorbed) whose boxes say that they are one object; merge in this order. */
+	/** Pairs (kept = older id, absorbed) of compatible labels that are one object: their boxes
+	 *  (axis-aligned in the world, a voxel wider on each side so that thin things overlap too) have an
+	 *  IoU above mergeIou, or more than mergeSurfaceOverlap of the smaller one's surface lies within
+	 *  two voxels of the larger one's. Boxes alone would unite neighbours that stand askew. Each object
+	 *  comes once at most; merging changes what overlaps: ask again until there is none. */
 	std::vector<std::pair<ObjectId, ObjectId>> findDuplicates() const;
 	/** @} */
 
 	/** @name mrpt::maps::CMetricMap
+	 * insertObservation() takes CObservationInstances with depth crops, alone or in a CSensoryFrame:
+	 * it associates them with predict() by Eq. (1)-(3), fuses, adds and removes. The likelihood of
+	 * such an observation is sum over detections k of log(q + (1 - q) max over j of (1 - L(j,k))), q =
+	 * 0.1 being the share of detections that the map cannot explain.
 	 * @{ */
 	bool isEmpty() const override { return objects_.empty(); }
+	/** Writes <prefix>.3Dscene, <prefix>.objmap and <prefix>_objects/<id>_<label>.ply; throws InputError. */
 	void saveMetricMapRepresentationToFile(const std::string& filePrefix) const override;
+	/** Meshes, boxes and names of the objects, and lines for the co-visible pairs. */
 	void getVisualizationInto(mrpt::opengl::CSetOfObjects& out) const override;
 	std::string asString() const override;
 	/** @} */
 
-   protected:
+ protected:
+	/** Keeps options and labels. */
 	void internal_clear() override;
 	bool internal_insertObservation(
 		const mrpt::obs::CObservation& observation,
@@ -124,7 +150,10 @@ class CObjectMap : public mrpt::maps::CMetricMap
 	bool internal_canComputeObservationLikelihood(
 		const mrpt::obs::CObservation& observation) const override;
 
-   private:
+ private:
+	TsdfVolume& writableVolume(Object& object);
+	void requireUsable(const RgbdFrame& frame, const Instance& instance) const;
+
 	std::map<ObjectId, Object> objects_;
 	LabelSet labels_;
 	ObjectId nextId_ = 0;

@@ -16,17 +16,17 @@ namespace semloop
  *  the range scan it came from. */
 struct DepthCrop
 {
-	cv::Mat depth;  //!< CV_16UC1 of the box's size; 0 = invalid
+	cv::Mat depth;        //!< CV_16UC1 of the box's size; 0 = invalid
 	float unit = 0.001f;  //!< metres = value * unit
 };
 
 /** One detected object: s_k = (m_k, l_k, c_k, e_k) of the paper, Sec. III-B. */
 struct Instance
 {
-	cv::Rect box;  //!< [px], inside the image
-	InstanceMask mask;  //!< m_k, of the whole image's size
-	LabelScores labelScores;  //!< l_k as a distribution, highest first; never empty
-	float confidence = 0;  //!< c_k in [0, 1]
+	cv::Rect box;                  //!< [px], inside the image
+	InstanceMask mask;             //!< m_k, of the whole image's size
+	LabelScores labelScores;       //!< l_k as a distribution, highest first; never empty
+	float confidence = 0;          //!< c_k in [0, 1]
 	std::vector<float> embedding;  //!< e_k, unit length; empty: none. Stored as half floats.
 	std::optional<DepthCrop> depth;
 
@@ -42,7 +42,7 @@ class CObservationInstances : public mrpt::obs::CObservation
 {
 	DEFINE_SERIALIZABLE(CObservationInstances, semloop)
 
-   public:
+public:
 	mrpt::img::TCamera camera;  //!< ncols x nrows is the image size that all masks share
 	mrpt::poses::CPose3D sensorPose;
 	LabelSet labels;

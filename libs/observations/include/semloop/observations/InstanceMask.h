@@ -14,14 +14,17 @@ namespace semloop
  *  All set operations work on the runs, in time linear in their number. */
 class InstanceMask
 {
-   public:
+public:
 	/** Pixels [begin, end) of a row. */
 	struct Run
 	{
 		uint16_t row = 0;
 		uint16_t begin = 0;
 		uint16_t end = 0;
-		bool operator==(const Run& o) const { return row == o.row && begin == o.begin && end == o.end; }
+		bool operator==(const Run& o) const
+		{
+			return row == o.row && begin == o.begin && end == o.end;
+		}
 	};
 
 	/** No pixel set, in an image of no size. */
@@ -56,7 +59,7 @@ class InstanceMask
 		return imageSize_ == o.imageSize_ && runs_ == o.runs_;
 	}
 
-   private:
+private:
 	void updateSummary();
 
 	cv::Size imageSize_;

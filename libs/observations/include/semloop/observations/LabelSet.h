@@ -10,7 +10,7 @@ namespace semloop
 /** The classes that a network knows, in its order of outputs. */
 class LabelSet
 {
-   public:
+public:
 	LabelSet() = default;
 	/** Throws InputError on an empty or repeated name. */
 	explicit LabelSet(std::vector<std::string> names);
@@ -28,7 +28,7 @@ class LabelSet
 
 	bool operator==(const LabelSet& o) const { return names_ == o.names_; }
 
-   private:
+private:
 	std::vector<std::string> names_;
 };
 
@@ -37,7 +37,7 @@ class LabelSet
 struct LabelScore
 {
 	uint32_t label = 0;  //!< index in a LabelSet
-	float score = 0;  //!< in [0, 1]
+	float score = 0;     //!< in [0, 1]
 	bool operator==(const LabelScore& o) const { return label == o.label && score == o.score; }
 };
 using LabelScores = std::vector<LabelScore>;

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <mrpt/obs/CObservation.h>
+#include <semloop/observations/ExternalImages.h>
 
 #include <cstddef>
 #include <deque>
@@ -12,15 +13,16 @@ namespace semloop
 /** Reads the observations of a rawlog one by one, in file order, without loading the file.
  *
  *  Both rawlog formats: plain observations, and sensory frames with actions (their observations
- *  come one by one). External images of the file are found in `<file>_Images/`. Wheel odometry in
- *  actions is passed over.
+ *  come one by one). External images are looked for in externalImagesFolder() and, when there is no such
+ *  folder, where MRPT's programs look; their names come out absolute. Wheel odometry in actions is
+ *  passed over.
  *
  *  Unlike mrpt::obs::CRawlog it tells a file that ended from one that was cut: next() throws
  *  InputError naming file and byte when the file ends inside an object, or holds a class that is
  *  not registered (with the plug-in as the remedy). What was read before stays good. */
 class RawlogReader
 {
-   public:
+public:
 	/** Throws InputError when the file is missing or unreadable. */
 	explicit RawlogReader(const std::string& path);
 	~RawlogReader();
@@ -32,16 +34,19 @@ class RawlogReader
 	/** Position in the file as stored on disk, in [0, 1], for progress bars. */
 	double progress() const;
 
-   private:
+private:
 	struct Stream;
+
+	mrpt::serialization::CSerializable::Ptr readObject();
+	void unpack(const mrpt::serialization::CSerializable::Ptr& object);
+	[[noreturn]] void fail(const std::string& what) const;
+
 	std::string path_;
+	std::string imagesFolder_;
 	std::unique_ptr<Stream> stream_;
 	std::deque<mrpt::obs::CObservation::Ptr> pending_;
 	std::size_t objectsRead_ = 0;
 };
-
-/** The folder beside a rawlog where its external images live: path without extension + "_Images". */
-std::string externalImagesFolder(const std::string& rawlogPath);
 
 /** X.rawlog -> X_instances.rawlog. */
 std::string instancesSidecarPath(const std::string& rawlogPath);

@@ -13,7 +13,7 @@ namespace semloop
  *  the partial file, which RawlogReader reads up to its end and tools can resume from. */
 class RawlogWriter
 {
-   public:
+public:
 	/** Throws InputError when the file cannot be created. */
 	explicit RawlogWriter(const std::string& path);
 	~RawlogWriter();
@@ -25,7 +25,7 @@ class RawlogWriter
 
 	static std::string partialPath(const std::string& path) { return path + ".partial"; }
 
-   private:
+private:
 	struct Stream;
 	std::string path_;
 	std::unique_ptr<Stream> stream_;

@@ -4,6 +4,7 @@
 #include <semloop/observations/RgbdFrame.h>
 
 #include <opencv2/core/mat.hpp>
+#include <optional>
 
 namespace semloop
 {
@@ -15,20 +16,24 @@ namespace semloop
  *  once and kept until the camera changes. */
 class Rectifier
 {
-   public:
+public:
+	/** Throws InputError when the images are not of the camera's size. */
 	RgbdFrame rectify(const RgbdFrame& frame);
-	/** Masks, boxes and depth crops; an instance that leaves the image is dropped. */
+	/** Masks, boxes and depth crops; an instance whose mask is empty or leaves the image is dropped. */
 	CObservationInstances::Ptr rectify(const CObservationInstances& observation);
 
-   private:
+private:
 	void prepare(const mrpt::img::TCamera& camera);
+	cv::Rect rectifiedRegion(const cv::Rect& region) const;
+	std::optional<Instance> rectify(const Instance& instance) const;
 
 	mrpt::img::TCamera camera_;
 	cv::Mat map1_, map2_;  //!< as cv::initUndistortRectifyMap makes them (CV_16SC2, CV_16UC1)
-	cv::Mat nearest_;  //!< CV_16SC2: source pixel of each rectified pixel, (-1, -1) outside
+	cv::Mat nearest_;      //!< CV_16SC2: source pixel of each rectified pixel, (-1, -1) outside
+	cv::Mat regions_;      //!< CV_32SC4: for each block of source pixels, the box it goes to
 };
 
-/** True when any distortion coefficient differs from 0. */
+/** True when the camera has a distortion model and any coefficient of it differs from 0. */
 bool hasDistortion(const mrpt::img::TCamera& camera);
 
 }  // namespace semloop

@@ -19,11 +19,13 @@ struct RgbdFrame
 	mrpt::poses::CPose3D T_robot_camera;
 };
 
-/** Takes the images out of a range scan (loading external ones, and unloading them again).
+/** Copies the images out of a range scan. External ones are read from their files; the scan itself
+ *  stays unloaded.
  *
- *  Throws InputError when an image is missing or unreadable, the sizes of colour, depth and camera
- *  differ, depth is not along the optical axis, or colour and depth are from different places
- *  (relativePoseIntensityWRTDepth with a translation of more than a millimetre).
+ *  Throws InputError when an image is missing, unreadable or cut, the sizes of colour, depth and camera
+ *  differ, depth is not along the optical axis, or depth is not registered to colour: seen from
+ *  another place (relativePoseIntensityWRTDepth with a translation of more than a millimetre) or with
+ *  other intrinsics (by more than 1 % of the focal length).
  *  A frame without one valid depth pixel is not an error here: callers decide. */
 RgbdFrame rgbdFrameFrom(const mrpt::obs::CObservation3DRangeScan& scan);
 

@@ -17,12 +17,12 @@ struct OdometryEstimate
 	enum class Status
 	{
 		Tracked,  //!< measured
-		Lost  //!< not measured: the motion model's guess; reason says why
+		Lost      //!< not measured: the motion model's guess; reason says why
 	};
 
 	Status status = Status::Tracked;
-	std::string reason;  //!< one line for a person when lost
-	mrpt::poses::CPose3D T_odom_camera;  //!< identity at the first frame
+	std::string reason;                      //!< one line for a person when lost
+	mrpt::poses::CPose3D T_odom_camera;      //!< identity at the first frame
 	mrpt::poses::CPose3D T_previous_camera;  //!< identity at the first frame
 	/** Covariance of log(T_previous_camera^-1 * truth), order of mrpt::poses::Lie::SE<3>: translation
 	 *  [m^2] first, then rotation [rad^2]. Positive definite. */
@@ -34,7 +34,7 @@ class Odometry : public mrpt::rtti::CObject
 {
 	DEFINE_VIRTUAL_MRPT_OBJECT(Odometry)
 
-   public:
+public:
 	virtual void configure(
 		const mrpt::config::CConfigFileBase& config, const std::string& section) = 0;
 

@@ -7,6 +7,7 @@
 #include <Eigen/Core>
 #include <cstdint>
 #include <map>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -35,17 +36,20 @@ struct NodeId
 	bool operator==(const NodeId& o) const { return kind == o.kind && index == o.index; }
 };
 
+/** "camera 12", "object 3". */
+std::string toString(const NodeId& id);
+
 /** A measurement Z_a_b of the relative pose T_a_b = T_world_a^-1 T_world_b, with residual
  *  e = log(Z^-1 T_world_a^-1 T_world_b) in mrpt::poses::Lie::SE<3>'s order (translation, rotation)
- *  and cost e^T information e: both residuals of Eq. (7) (e_cc: a = camera i, b = camera i + 1; e_oc:
- *  a = object j, b = camera i). */
+ *  and cost 1/2 e^T information e: both residuals of Eq. (7) (e_cc: a = camera i, b = camera i + 1;
+ *  e_oc: a = object j, b = camera i). See PoseResidual.h. */
 struct PoseEdge
 {
 	enum class Kind : uint8_t
 	{
-		Odometry,  //!< camera to camera
+		Odometry,     //!< camera to camera
 		Observation,  //!< object to camera
-		Loop  //!< from a loop closure: under a robust loss
+		Loop          //!< from a loop closure: under a robust loss
 	};
 	Kind kind = Kind::Odometry;
 	NodeId a, b;
@@ -55,8 +59,9 @@ struct PoseEdge
 
 struct OptimizationReport
 {
-	double initialCost = 0.0;  //!< half the sum of the squared whitened residuals
-	double finalCost = 0.0;
+	/** Half the sum of the squared whitened residuals, those of loop edges under their loss. */
+	double initialCost = 0.0;
+	double finalCost = 0.0;  //!< same, at the poses that the graph has afterwards
 	int iterations = 0;
 	bool converged = false;
 	std::string message;  //!< why it stopped, one line
@@ -68,22 +73,24 @@ class PoseGraph : public mrpt::rtti::CObject
 {
 	DEFINE_VIRTUAL_MRPT_OBJECT(PoseGraph)
 
-   public:
+public:
 	virtual void configure(
 		const mrpt::config::CConfigFileBase& config, const std::string& section) = 0;
 
 	/** Adds a node or sets its pose. The first camera that is added stays fixed: it is the world.
 	 *  Throws std::invalid_argument on a pose that is not finite. */
 	void setNode(const NodeId& id, const mrpt::poses::CPose3D& pose);
-	/** Throws std::invalid_argument on an unknown node, a pose that is not finite, or an information
-	 *  matrix that is not symmetric positive definite. */
+	/** Throws std::invalid_argument on an unknown node, an edge from a node to itself, a pose that is
+	 *  not finite, or an information matrix that is not symmetric positive definite. */
 	void addEdge(const PoseEdge& edge);
 	/** Object `absorbed` turns out to be `kept`, at T_kept_absorbed: every edge (absorbed, i) becomes
 	 *  (kept, i) with Z_kept_i = T_kept_absorbed Z_absorbed_i, and counts as a loop edge when asLoop
-	 *  (Sec. III-D, "corrected using the estimated drift error"); the node goes. */
+	 *  (Sec. III-D, "corrected using the estimated drift error"); the node goes. An edge between the
+	 *  two goes as well; the pose of `kept` stays. Throws std::invalid_argument when either object is
+	 *  unknown, both are the same, or the transform is not finite. */
 	void mergeObjects(
 		uint64_t kept, uint64_t absorbed, const mrpt::poses::CPose3D& T_kept_absorbed, bool asLoop);
-	/** Removes an object's node and edges. */
+	/** Removes an object's node and edges; throws std::invalid_argument on an unknown object. */
 	void removeObject(uint64_t object);
 
 	const std::map<NodeId, mrpt::poses::CPose3D>& nodes() const { return nodes_; }
@@ -91,10 +98,17 @@ class PoseGraph : public mrpt::rtti::CObject
 	const mrpt::poses::CPose3D& pose(const NodeId& id) const;  //!< throws std::out_of_range
 	bool has(const NodeId& id) const { return nodes_.count(id) > 0; }
 
-	/** Minimises Eq. (7) from the current poses; the poses change only when the result is finite. */
+	/** The first camera that was added; empty while there is none. */
+	const std::optional<NodeId>& fixedCamera() const { return fixedCamera_; }
+
+	/** Minimises Eq. (7) from the current poses; the poses change only when the result is finite.
+	 *
+	 *  A part of the graph that no chain of edges joins to the fixed camera is optimised on its own,
+	 *  its first node (cameras before objects, by index) held in place; the message names it. */
 	virtual OptimizationReport optimize() = 0;
 
-   protected:
+protected:
+	std::optional<NodeId> fixedCamera_;
 	std::map<NodeId, mrpt::poses::CPose3D> nodes_;
 	std::vector<PoseEdge> edges_;
 };

@@ -16,7 +16,7 @@ class Embedder : public mrpt::rtti::CObject
 {
 	DEFINE_VIRTUAL_MRPT_OBJECT(Embedder)
 
-   public:
+public:
 	virtual void configure(
 		const mrpt::config::CConfigFileBase& config, const std::string& section) = 0;
 
@@ -24,5 +24,8 @@ class Embedder : public mrpt::rtti::CObject
 	 *  the mask is. */
 	virtual std::vector<float> embed(const cv::Mat& color, const Instance& instance) = 0;
 };
+
+/** Gives every instance that has no embedding yet its own; color is the image they were found in. */
+void addEmbeddings(Embedder& embedder, const cv::Mat& color, CObservationInstances& observation);
 
 }  // namespace semloop

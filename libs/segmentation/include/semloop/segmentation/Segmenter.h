@@ -16,7 +16,7 @@ class Segmenter : public mrpt::rtti::CObject
 {
 	DEFINE_VIRTUAL_MRPT_OBJECT(Segmenter)
 
-   public:
+public:
 	/** Reads the section of the chosen implementation; throws UsageError on a bad option, InputError
 	 *  on a bad file. Called once before segment(). */
 	virtual void configure(

@@ -36,6 +36,8 @@ public:
 
 	bool contains(ObjectId id) const;
 	bool isRevisited(ObjectId id) const { return revisited_.count(id) > 0; }
+	/** In the local map and not revisited: odometry can be trusted between then and now. */
+	bool isOfThisTime(ObjectId id) const { return contains(id) && !isRevisited(id); }
 	/** Everything seen over the last metres. */
 	std::set<ObjectId> objects() const;
 	/** The same without revisited objects. */

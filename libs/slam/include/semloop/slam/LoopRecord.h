@@ -5,15 +5,26 @@
 #include <semloop/pose_graph/PoseGraph.h>
 
 #include <optional>
+#include <string>
+#include <vector>
 
 namespace semloop
 {
+/** Two objects that a verdict says are one, as they were before the correction. */
+struct MatchedObjects
+{
+	ObjectId query = 0, target = 0;
+	std::string queryLabel, targetLabel;
+	mrpt::math::TPoint3D queryCentre, targetCentre;  //!< in the (drifted) world [m]
+};
+
 /** One attempt to close a loop: a line of loops.jsonl. */
 struct LoopRecord
 {
 	std::size_t frame = 0;  //!< camera node at which it was tried
 	mrpt::Clock::time_point time;
 	LoopVerdict verdict;
+	std::vector<MatchedObjects> matched;  //!< verdict.matches in detail
 	std::optional<OptimizationReport> optimization;  //!< when accepted
 };
 

@@ -72,6 +72,7 @@ private:
 	void addObservations(const std::vector<ObjectObservation>& seen);
 	void keepKeyFrame(const SlamFrame& input);
 	void maintainMap();
+	std::vector<MatchedObjects> matchedObjects(const LoopVerdict& verdict) const;
 	void closeLoop(mrpt::Clock::time_point time);
 	void followOptimizedCamera();
 

@@ -1,0 +1,139 @@
+#include <benchmark/benchmark.h>
+#include <semloop/loop_closure/GeometricVerification.h>
+#include <semloop/loop_closure/ObjectAligner.h>
+#include <semloop/loop_closure/SpectralMatcher.h>
+#include <Eigen/Core>
+
+#include <algorithm>
+#include <cmath>
+#include <random>
+#include <string>
+
+namespace
+{
+using namespace semloop;
+
+/** One object per square metre, 2.5 m high; pairs closer than 4 m are co-visible. */
+SemanticGraph randomMap(std::size_t objects, int labels, unsigned seed)
+{
+	std::mt19937 random(seed);
+	std::uniform_real_distribution<double> unit(0, 1);
+	const double side = std::sqrt(static_cast<double>(objects));
+	SemanticGraph map;
+	for (std::size_t i = 0; i < objects; ++i)
+	{
+		GraphVertex vertex;
+		vertex.id = i;
+		vertex.label = "class" + std::to_string(static_cast<int>(unit(random) * labels));
+		vertex.position = {unit(random) * side, unit(random) * side, unit(random) * 2.5};
+		map.vertices.push_back(vertex);
+	}
+	for (std::size_t a = 0; a < objects; ++a)
+		for (std::size_t b = a + 1; b < objects; ++b)
+			if (map.distance(a, b) < 4) map.edges.insert({a, b});
+	return map;
+}
+
+/** The objects nearest to the middle of the map with 5 cm of noise, moved, all co-visible. */
+SemanticGraph localMap(const SemanticGraph& map, std::size_t objects, unsigned seed)
+{
+	std::mt19937 random(seed);
+	std::normal_distribution<double> noise(0, 0.05);
+	const double middle = std::sqrt(static_cast<double>(map.vertices.size())) / 2;
+	auto byDistance = map.vertices;
+	const auto fromMiddle = [&](const GraphVertex& v)
+	{ return std::hypot(v.position.x - middle, v.position.y - middle); };
+	std::sort(
+		byDistance.begin(), byDistance.end(),
+		[&](const auto& a, const auto& b) { return fromMiddle(a) < fromMiddle(b); });
+	SemanticGraph local;
+	for (std::size_t i = 0; i < objects; ++i)
+	{
+		GraphVertex vertex = byDistance[i];
+		const auto p = vertex.position;
+		vertex.position = {-p.y + 3 + noise(random), p.x - 1 + noise(random), p.z + noise(random)};
+		local.vertices.push_back(vertex);
+		for (std::size_t a = 0; a < i; ++a) local.edges.insert({a, i});
+	}
+	return local;
+}
+
+/** Arguments: query objects, target objects, labels. */
+void spectralMatch(benchmark::State& state)
+{
+	const auto target = randomMap(state.range(1), static_cast<int>(state.range(2)), 1);
+	const auto query = localMap(target, state.range(0), 2);
+	const SpectralMatcher matcher;
+	for (auto _ : state) benchmark::DoNotOptimize(matcher.match(query, target));
+}
+BENCHMARK(spectralMatch)->Args({15, 60, 10})->Unit(benchmark::kMillisecond);
+
+/** Whole maps of N = M objects with 20 labels against each other. */
+void spectralMatchOfWholeMaps(benchmark::State& state)
+{
+	const auto target = randomMap(state.range(0), 20, 1);
+	const auto query = target;
+	const SpectralMatcher matcher;
+	for (auto _ : state) benchmark::DoNotOptimize(matcher.match(query, target));
+}
+BENCHMARK(spectralMatchOfWholeMaps)->Arg(50)->Arg(100)->Arg(200)->Unit(benchmark::kMillisecond);
+
+/** Arguments: query objects, target objects, labels. */
+void verification(benchmark::State& state)
+{
+	const auto target = randomMap(state.range(1), static_cast<int>(state.range(2)), 1);
+	const auto query = localMap(target, state.range(0), 2);
+	const auto matches = SpectralMatcher().match(query, target).matches;
+	for (auto _ : state) benchmark::DoNotOptimize(verifyGeometry(query, target, matches));
+}
+BENCHMARK(verification)
+	->Args({15, 60, 10})
+	->Args({15, 200, 15})
+	->Args({100, 100, 20})
+	->Unit(benchmark::kMillisecond);
+
+/** The upper halves of eight ellipsoids with a point a centimetre, 20 000 in all. */
+std::vector<SurfacePair> ellipsoids()
+{
+	std::vector<SurfacePair> pairs;
+	for (int k = 0; k < 8; ++k)
+	{
+		SurfacePair pair;
+		pair.queryCentre = {0.4 * (k % 4), 0.5 * (k / 4), 0.8};
+		pair.targetCentre = pair.queryCentre;
+		const double a = 0.10 + 0.01 * k, b = 0.15, c = 0.2;
+		for (double u = 0; u < 2 * M_PI; u += 0.06)
+			for (double v = 0; v < M_PI / 2; v += 0.065)
+			{
+				const double x = std::cos(u) * std::cos(v), y = std::sin(u) * std::cos(v),
+							 z = std::sin(v);
+				const Eigen::Vector3d normal = Eigen::Vector3d(x / a, y / b, z / c).normalized();
+				SurfacePoint point;
+				point.position = {
+					static_cast<float>(pair.queryCentre.x + a * x),
+					static_cast<float>(pair.queryCentre.y + b * y),
+					static_cast<float>(pair.queryCentre.z + c * z)};
+				point.normal = {
+					static_cast<float>(normal.x()), static_cast<float>(normal.y()),
+					static_cast<float>(normal.z())};
+				pair.query.push_back(point);
+			}
+		pair.target = pair.query;
+		pairs.push_back(pair);
+	}
+	return pairs;
+}
+
+void alignment(benchmark::State& state, const std::string& method)
+{
+	const auto pairs = ellipsoids();
+	ObjectAligner aligner;
+	aligner.options.method = method;
+	const auto start = mrpt::poses::CPose3D::FromXYZYawPitchRoll(0.1, -0.05, 0.02, 0.05, 0, 0);
+	for (auto _ : state) benchmark::DoNotOptimize(aligner.align(pairs, start));
+}
+BENCHMARK_CAPTURE(alignment, semanticPose, "semantic_pose")->Unit(benchmark::kMillisecond);
+BENCHMARK_CAPTURE(alignment, fpfhRansac, "fpfh_ransac")->Unit(benchmark::kMillisecond);
+}  // namespace
+
+BENCHMARK_MAIN();

@@ -1,1 +1,0 @@
-#include <semloop/loop_closure/SemanticGraph.h>

@@ -1,0 +1,88 @@
+#pragma once
+
+#include <mrpt/config/CConfigFileBase.h>
+#include <mrpt/math/TPoint3D.h>
+#include <mrpt/poses/CPose3D.h>
+#include <semloop/config/Options.h>
+#include <semloop/object_map/CObjectMap.h>
+
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace semloop
+{
+struct ObjectAlignerOptions : Options
+{
+	std::string method = "semantic_pose";  //!< where the refinement starts
+	double queryVoxel = 0.03;    //!< the query's surface is thinned to a point per voxel [m]
+	double targetVoxel = 0.015;  //!< same, of the target's surface [m]
+	int maxQueryPoints = 2000;   //!< of all objects together
+	double startDistance = 0.3;  //!< of corresponding points, in the first iteration [m]
+	double endDistance = 0.05;   //!< in the last iterations and for fitness and rmse [m]
+	double maxNormalAngle = 1.0471975511965976;  //!< between corresponding normals [rad]
+	int maxIterations = 40;
+	double centreSigma = 0.3;      //!< how well matched centres agree when their views differ [m]
+	double surfaceSigma = 0.01;    //!< how well aligned surfaces agree [m]
+	double minFitness = 0.3;       //!< aligned share of the query's points
+	double maxRmse = 0.025;        //!< of the aligned points, along the target's normals [m]
+	double maxCorrection = 0.7;    //!< from the semantic pose, at the query's centre [m]
+	double featureRadius = 0.12;   //!< of an FPFH [m]
+	double ransacDistance = 0.06;  //!< of an inlier [m]
+	int ransacIterations = 20000;
+	int seed = 1;  //!< of the RANSAC
+
+protected:
+	void describe(OptionFields& fields) override;
+};
+
+/** Surfaces of two matched objects, each in its own world [m]; a side may be empty. */
+struct SurfacePair
+{
+	std::vector<SurfacePoint> query, target;
+	mrpt::math::TPoint3D queryCentre, targetCentre;
+};
+
+struct ObjectAlignment
+{
+	bool accepted = false;
+	std::string reason;                   //!< one line with the numbers
+	mrpt::poses::CPose3D T_target_query;  //!< the best found, also when not accepted
+	double fitness = 0.0;  //!< query points with an aligned partner / query points, [0, 1]
+	double rmse = 0.0;     //!< of those, along the target's normals [m]
+	int iterations = 0;    //!< of the refinement
+};
+
+/** Aligns the surfaces of all matched objects at once (Sec. III-C, Object Alignment).
+ *
+ *  method = semantic_pose starts where the matched centres say; fpfh_ransac is the paper's: FPFH
+ *  (R. Rusu et al., ICRA 2009) matched within each pair of objects, then RANSAC over three points, and
+ *  needs views of the objects that are not too different.
+ *
+ *  Both are refined by point-to-plane ICP (Y. Chen and G. Medioni, 1992) with correspondences within
+ *  matched objects only, at a distance that shrinks from startDistance to endDistance and with
+ *  Tukey's weights. The cost is
+ *      mean of (n . (T q - t))^2 / surfaceSigma^2  +  mean of |T c_q - c_t|^2 / centreSigma^2,
+ *  whose second part, over the matched centres, decides what the surfaces leave open, such as sliding
+ *  along flat ones. The yaw of a single round object stays open.
+ *
+ *  Not accepted: no surface on one side, no RANSAC model, too little overlap, too large a residual,
+ *  or a result too far from the semantic pose. The same input gives the same output. */
+class ObjectAligner
+{
+public:
+	void configure(const mrpt::config::CConfigFileBase& config, const std::string& section);
+
+	/** T_semantic is the T_target_query of the matched centres. */
+	ObjectAlignment align(
+		const std::vector<SurfacePair>& pairs, const mrpt::poses::CPose3D& T_semantic) const;
+
+	/** Of matched objects (query first) of one map, both in its world. */
+	ObjectAlignment align(
+		const CObjectMap& map, const std::vector<std::pair<ObjectId, ObjectId>>& matches,
+		const mrpt::poses::CPose3D& T_semantic) const;
+
+	ObjectAlignerOptions options;
+};
+
+}  // namespace semloop

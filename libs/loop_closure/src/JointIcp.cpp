@@ -1,0 +1,135 @@
+#include <Eigen/Cholesky>
+#include <algorithm>
+#include <cmath>
+
+#include "SurfaceClouds.h"
+
+namespace semloop
+{
+namespace
+{
+using Matrix6d = Eigen::Matrix<double, 6, 6>;
+using Vector6d = Eigen::Matrix<double, 6, 1>;
+
+constexpr double kShrink = 0.85;     // of the search distance, an iteration
+constexpr double kDamping = 1e-3;    // leaves alone what neither surfaces nor centres decide
+constexpr double kConverged = 1e-5;  // [m], [rad]
+
+/** H x = -g for a small motion x = (rotation, translation), applied on the target's side. */
+struct NormalEquations
+{
+	Matrix6d H = Matrix6d::Identity() * kDamping;
+	Vector6d g = Vector6d::Zero();
+
+	void add(const Vector6d& jacobian, double residual, double weight)
+	{
+		H.noalias() += weight * jacobian * jacobian.transpose();
+		g.noalias() += weight * residual * jacobian;
+	}
+};
+
+Vector6d alongDirection(const Eigen::Vector3d& point, const Eigen::Vector3d& direction)
+{
+	Vector6d jacobian;
+	jacobian << point.cross(direction), direction;
+	return jacobian;
+}
+
+double tukey(double residual, double limit)
+{
+	const double ratio = residual / limit;
+	return std::abs(ratio) < 1 ? mrpt::square(1 - ratio * ratio) : 0.0;
+}
+
+void addSurfaces(
+	NormalEquations& equations, const Correspondences& found, double limit, double sigma)
+{
+	const double scale = 1 / (sigma * sigma * std::max<double>(1, double(found.items.size())));
+	for (const auto& item : found.items)
+	{
+		const Eigen::Vector3d normal = item.pair->target.normals.col(item.target);
+		equations.add(
+			alongDirection(item.point, normal), item.residual, scale * tukey(item.residual, limit));
+	}
+}
+
+void addCentres(
+	NormalEquations& equations, const AlignmentProblem& problem, const Eigen::Isometry3d& T,
+	double sigma)
+{
+	const double scale = 1 / (sigma * sigma * static_cast<double>(problem.pairs.size()));
+	for (const auto& pair : problem.pairs)
+	{
+		const Eigen::Vector3d centre = T * pair.queryCentre;
+		for (int axis = 0; axis < 3; ++axis)
+			equations.add(
+				alongDirection(centre, Eigen::Vector3d::Unit(axis)),
+				centre[axis] - pair.targetCentre[axis], scale);
+	}
+}
+
+Eigen::Isometry3d motion(const Vector6d& x)
+{
+	const Eigen::Vector3d rotation = x.head<3>();
+	const double angle = rotation.norm();
+	Eigen::Isometry3d result = Eigen::Isometry3d::Identity();
+	if (angle > 1e-12) result.linear() = Eigen::AngleAxisd(angle, rotation / angle).matrix();
+	result.translation() = x.tail<3>();
+	return result;
+}
+}  // namespace
+
+double Correspondences::rmse() const
+{
+	if (items.empty()) return 0;
+	double sum = 0;
+	for (const auto& item : items) sum += item.residual * item.residual;
+	return std::sqrt(sum / static_cast<double>(items.size()));
+}
+
+Correspondences findCorrespondences(
+	const AlignmentProblem& problem, const Eigen::Isometry3d& T, double maxDistance,
+	double maxNormalAngle)
+{
+	const double leastCosine = std::cos(maxNormalAngle);
+	Correspondences result;
+	for (const auto& pair : problem.pairs)
+		for (Eigen::Index i = 0; i < pair.query.size(); ++i)
+		{
+			const Eigen::Vector3d point = T * pair.query.points.col(i);
+			const auto nearest = pair.nearestTarget.find(point, maxDistance);
+			if (!nearest) continue;
+			const Eigen::Vector3d normal = pair.target.normals.col(*nearest);
+			if (normal.dot(T.linear() * pair.query.normals.col(i)) < leastCosine) continue;
+			const double residual = normal.dot(point - pair.target.points.col(*nearest));
+			result.items.push_back({&pair, i, *nearest, point, residual});
+		}
+	return result;
+}
+
+JointRefinement refineJointly(
+	const AlignmentProblem& problem, const Eigen::Isometry3d& start,
+	const ObjectAlignerOptions& options)
+{
+	JointRefinement result;
+	result.T = start;
+	double distance = std::max(options.startDistance, options.endDistance);
+	while (result.iterations < options.maxIterations)
+	{
+		++result.iterations;
+		const auto found = findCorrespondences(problem, result.T, distance, options.maxNormalAngle);
+		NormalEquations equations;
+		addSurfaces(equations, found, distance, options.surfaceSigma);
+		addCentres(equations, problem, result.T, options.centreSigma);
+		const Vector6d step = -equations.H.ldlt().solve(equations.g);
+		result.T = motion(step) * result.T;
+		result.T.linear() = Eigen::Quaterniond(result.T.linear()).normalized().matrix();
+
+		const bool last = distance <= options.endDistance;
+		if (last && step.norm() < kConverged) break;
+		distance = std::max(options.endDistance, kShrink * distance);
+	}
+	return result;
+}
+
+}  // namespace semloop

@@ -1,0 +1,157 @@
+#include <mrpt/core/initializer.h>
+#include <semloop/config/Error.h>
+#include <semloop/config/ModuleFactory.h>
+#include <semloop/loop_closure/SemanticLoopDetector.h>
+#include <semloop/loop_closure/SpectralMatcher.h>
+
+#include <cmath>
+#include <cstdio>
+
+IMPLEMENTS_MRPT_OBJECT(SemanticLoopDetector, LoopDetector, semloop)
+
+MRPT_INITIALIZER(registerSemanticLoopDetector)
+{
+	mrpt::rtti::registerClass(CLASS_ID(semloop::SemanticLoopDetector));
+}
+
+namespace semloop
+{
+namespace
+{
+using Decision = LoopVerdict::Decision;
+
+constexpr const char* kMatcherSection = "graph_matching";
+constexpr const char* kAlignerSection = "alignment";
+
+/** How far the correction moves the middle of the query [m]. */
+double driftOf(const mrpt::poses::CPose3D& T_target_query, const SemanticGraph& query)
+{
+	mrpt::math::TPoint3D centroid;
+	for (const auto& vertex : query.vertices) centroid += vertex.position;
+	centroid *= 1.0 / static_cast<double>(query.vertices.size());
+	return T_target_query.composePoint(centroid).distanceTo(centroid);
+}
+
+template <class... Numbers>
+std::string text(const char* format, Numbers... numbers)
+{
+	char buffer[160];
+	std::snprintf(buffer, sizeof buffer, format, numbers...);
+	return buffer;
+}
+
+LoopVerdict& reject(LoopVerdict& verdict, std::string reason)
+{
+	verdict.decision = Decision::Rejected;
+	verdict.reason = std::move(reason);
+	return verdict;
+}
+}  // namespace
+
+void SemanticLoopDetectorOptions::describe(OptionFields& fields)
+{
+	fields.text("matcher", matcher, "class name of the graph matcher");
+	fields.integer(
+		"min_observations", minObservations, 1, 1000000,
+		"objects that were seen in fewer frames stay out of the graphs");
+	fields.number(
+		"min_edge_share", minEdgeShare, 0, 1, "matched edges / edges of the query, Sec. IV-B");
+	fields.number(
+		"edge_length_tolerance", edgeLengthTolerance, 0, 100,
+		"difference of the lengths of a matched edge [m]");
+	fields.number(
+		"max_drift", maxDrift, 0, 1e6,
+		"larger corrections, at the query's centroid, are rejected; 0: no limit [m]");
+	verification.describe(fields);
+}
+
+SemanticLoopDetector::SemanticLoopDetector() : matcher_(SpectralMatcher::Create()) {}
+
+void SemanticLoopDetector::configure(
+	const mrpt::config::CConfigFileBase& config, const std::string& section)
+{
+	options.loadFromConfigFile(config, section);
+	matcher_ = makeModule<GraphMatcher>(
+		options.matcher, configFileName(config) + ": [" + section + "] matcher");
+	matcher_->configure(config, kMatcherSection);
+	aligner.configure(config, kAlignerSection);
+}
+
+LoopVerdict SemanticLoopDetector::detect(
+	const SemanticGraph& query, const SemanticGraph& target) const
+{
+	LoopVerdict verdict;
+	verdict.queryObjects = query.vertices.size();
+	if (query.vertices.empty() || target.vertices.empty())
+		return reject(
+			verdict, text(
+						 "%zu objects against %zu: nothing to match", query.vertices.size(),
+						 target.vertices.size()));
+
+	// Sec. III-C, Eq. (4)-(6)
+	const auto matching = matcher_->match(query, target);
+	verdict.candidateMatches = matching.matches.size();
+	verdict.matchingScore = matching.score;
+
+	// Sec. IV-B: a loop needs half of the query's edges
+	verdict.matchedEdgeShare =
+		matchedEdgeShare(query, target, matching.matches, options.edgeLengthTolerance);
+	if (verdict.matchedEdgeShare < options.minEdgeShare)
+		return reject(
+			verdict,
+			text(
+				"only %.0f %% of the %zu edges matched, needed are %.0f %%",
+				100 * verdict.matchedEdgeShare, query.edges.size(), 100 * options.minEdgeShare));
+
+	const auto check = verifyGeometry(query, target, matching.matches, options.verification);
+	for (const auto& [j, k] : check.inliers)
+		verdict.matches.emplace_back(query.vertices[j].id, target.vertices[k].id);
+	verdict.T_target_query = check.T_target_query;
+	verdict.centreRmse = check.rmse;
+	verdict.runnerUp = check.runnerUp;
+	verdict.reason = check.reason;
+	if (check.outcome != GeometricVerification::Outcome::Confirmed)
+	{
+		if (check.outcome == GeometricVerification::Outcome::Ambiguous)
+			verdict.decision = Decision::Ambiguous;
+		return verdict;
+	}
+
+	const double drift = driftOf(check.T_target_query, query);
+	if (options.maxDrift > 0 && drift > options.maxDrift)
+		return reject(
+			verdict, text(
+						 "the correction of %.2f m is larger than the %.2f m allowed", drift,
+						 options.maxDrift));
+	verdict.decision = Decision::Accepted;
+	return verdict;
+}
+
+LoopVerdict SemanticLoopDetector::detect(
+	const CObjectMap& map, const std::set<ObjectId>& query, const std::set<ObjectId>& target) const
+{
+	LoopVerdict verdict;
+	const auto queryGraph = SemanticGraph::fromMap(map, query, options.minObservations);
+	const auto targetGraph = SemanticGraph::fromMap(map, target, options.minObservations);
+	try
+	{
+		verdict = detect(queryGraph, targetGraph);
+	}
+	catch (const InputError& error)  // graphs that the matcher cannot take
+	{
+		verdict.queryObjects = queryGraph.vertices.size();
+		return reject(verdict, error.what());
+	}
+	if (verdict.decision != Decision::Accepted) return verdict;
+
+	// Sec. III-C, Object Alignment
+	const auto alignment = aligner.align(map, verdict.matches, verdict.T_target_query);
+	verdict.alignmentFitness = alignment.fitness;
+	verdict.alignmentRmse = alignment.rmse;
+	if (!alignment.accepted) return reject(verdict, verdict.reason + "; but " + alignment.reason);
+	verdict.T_target_query = alignment.T_target_query;
+	verdict.reason += "; " + alignment.reason;
+	return verdict;
+}
+
+}  // namespace semloop

@@ -1,0 +1,98 @@
+#pragma once
+
+#include <semloop/loop_closure/ObjectAligner.h>
+#include <Eigen/Core>
+#include <Eigen/Geometry>
+#include <memory>
+#include <optional>
+
+#include <vector>
+
+namespace semloop
+{
+/** Oriented points, one a column. */
+struct Cloud
+{
+	Eigen::Matrix3Xd points;   //!< [m]
+	Eigen::Matrix3Xd normals;  //!< unit length
+
+	Eigen::Index size() const { return points.cols(); }
+};
+
+/** The mean point of every voxel; opposite sides of a thin object are kept apart. Ordered by voxel. */
+Cloud thinned(const Cloud& cloud, double voxel);
+
+/** Exact nearest neighbours in a cloud that is not empty. */
+class NearestPoint
+{
+public:
+	explicit NearestPoint(const Eigen::Matrix3Xd& points);
+	~NearestPoint();
+	NearestPoint(NearestPoint&&) noexcept;
+
+	/** Index of the nearest point, when it is not further away than maxDistance. */
+	std::optional<Eigen::Index> find(const Eigen::Vector3d& point, double maxDistance) const;
+
+private:
+	struct Tree;
+	std::unique_ptr<Tree> tree_;
+};
+
+/** Two matched objects, thinned, in coordinates near the origin (see AlignmentProblem). */
+struct CloudPair
+{
+	Cloud query, target;
+	Eigen::Vector3d queryCentre, targetCentre;
+	NearestPoint nearestTarget;
+};
+
+/** All pairs that have surfaces on both sides. Points are relative to an origin in each world. */
+struct AlignmentProblem
+{
+	Eigen::Vector3d queryOrigin = Eigen::Vector3d::Zero();
+	Eigen::Vector3d targetOrigin = Eigen::Vector3d::Zero();
+	std::vector<CloudPair> pairs;
+
+	Eigen::Index queryPoints() const;
+	Eigen::Isometry3d toLocal(const mrpt::poses::CPose3D& T_target_query) const;
+	mrpt::poses::CPose3D toWorld(const Eigen::Isometry3d& T_local) const;
+};
+
+AlignmentProblem makeProblem(
+	const std::vector<SurfacePair>& pairs, const ObjectAlignerOptions& options);
+
+/** Query points with a partner in the matched target object: near and of similar normal. */
+struct Correspondences
+{
+	struct Item
+	{
+		const CloudPair* pair = nullptr;
+		Eigen::Index query = 0, target = 0;
+		Eigen::Vector3d point;  //!< the query's, in the target's frame
+		double residual = 0;    //!< along the target's normal [m]
+	};
+
+	std::vector<Item> items;
+	double rmse() const;  //!< of the residuals; 0 when empty [m]
+};
+
+Correspondences findCorrespondences(
+	const AlignmentProblem& problem, const Eigen::Isometry3d& T, double maxDistance,
+	double maxNormalAngle);
+
+struct JointRefinement
+{
+	Eigen::Isometry3d T = Eigen::Isometry3d::Identity();
+	int iterations = 0;
+};
+
+/** Point-to-plane ICP over all pairs, see ObjectAligner. */
+JointRefinement refineJointly(
+	const AlignmentProblem& problem, const Eigen::Isometry3d& start,
+	const ObjectAlignerOptions& options);
+
+/** FPFH matched within each pair, then RANSAC over all; empty when no model has 10 inliers. */
+std::optional<Eigen::Isometry3d> alignFeatures(
+	const AlignmentProblem& problem, const ObjectAlignerOptions& options);
+
+}  // namespace semloop

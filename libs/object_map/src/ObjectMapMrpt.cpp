@@ -1,0 +1,112 @@
+#include <mrpt/opengl/CBox.h>
+#include <mrpt/opengl/CSetOfLines.h>
+#include <mrpt/opengl/CSetOfObjects.h>
+#include <mrpt/opengl/CSetOfTriangles.h>
+#include <mrpt/opengl/CText.h>
+#include <semloop/object_map/CObjectMap.h>
+
+#include <sstream>
+
+namespace semloop
+{
+MAP_DEFINITION_REGISTER("objectMap,semloop::CObjectMap", semloop::CObjectMap)
+
+namespace
+{
+mrpt::opengl::CSetOfTriangles::Ptr trianglesOf(const TriangleMesh& mesh)
+{
+	auto triangles = mrpt::opengl::CSetOfTriangles::Create();
+	std::vector<mrpt::opengl::TTriangle> all;
+	all.reserve(mesh.triangles.size());
+	for (const auto& corners : mesh.triangles)
+	{
+		mrpt::opengl::TTriangle triangle;
+		for (std::size_t i = 0; i < 3; ++i)
+		{
+			const SurfacePoint& vertex = mesh.vertices[corners[i]];
+			triangle.vertices[i].xyzrgba.pt = vertex.position;
+			triangle.vertices[i].normal = vertex.normal;
+			triangle.vertices[i].setColor(vertex.color);
+		}
+		all.push_back(triangle);
+	}
+	triangles->insertTriangles(all.begin(), all.end());
+	return triangles;
+}
+}  // namespace
+
+std::string CObjectMap::asString() const
+{
+	std::set<uint32_t> labels;
+	std::size_t bytes = 0;
+	for (const auto& [id, object] : objects_)
+	{
+		labels.insert(object.label());
+		bytes += object.volume->memoryBytes();
+	}
+	std::ostringstream out;
+	out << "CObjectMap: " << objects_.size() << " objects of " << labels.size() << " labels, "
+		<< bytes / 1024 << " KiB";
+	return out.str();
+}
+
+void CObjectMap::getVisualizationInto(mrpt::opengl::CSetOfObjects& out) const
+{
+	if (!genericMapParams.enableSaveAs3DObject) return;
+	auto edges = mrpt::opengl::CSetOfLines::Create();
+	edges->setName("co-visible");
+	edges->setColor_u8(mrpt::img::TColor(90, 90, 90));
+	for (const auto& [id, object] : objects_)
+	{
+		auto group = mrpt::opengl::CSetOfObjects::Create();
+		group->setName(labelName(object) + " " + std::to_string(id));
+		group->setPose(object.T_world_object);
+		group->insert(trianglesOf(object.volume->mesh()));
+		if (const auto box = object.volume->boundingBox())
+		{
+			auto frame = mrpt::opengl::CBox::Create(box->min, box->max, true, 1.0f);
+			frame->setColor_u8(mrpt::img::TColor(40, 110, 220));
+			group->insert(frame);
+			auto text = mrpt::opengl::CText::Create(group->getName());
+			text->setColor_u8(mrpt::img::TColor(20, 20, 20));
+			const auto middle = (box->min + box->max) * 0.5;
+			text->setLocation(middle.x, middle.y, box->max.z);
+			group->insert(text);
+		}
+		out.insert(group);
+		for (const auto& [other, times] : object.covisible)
+			if (id < other)
+			{
+				const auto a = object.centre(), b = objects_.at(other).centre();
+				edges->appendLine(a.x, a.y, a.z, b.x, b.y, b.z);
+			}
+	}
+	if (!objects_.empty()) out.insert(edges);
+}
+
+CObjectMap::TMapDefinition::TMapDefinition() = default;
+
+void CObjectMap::TMapDefinition::loadFromConfigFile_map_specific(
+	const mrpt::config::CConfigFileBase& source, const std::string& sectionNamePrefix)
+{
+	insertOpts.loadFromConfigFile(source, sectionNamePrefix + "_insertOpts");
+	maintenanceOpts.loadFromConfigFile(source, sectionNamePrefix + "_maintenanceOpts");
+}
+
+void CObjectMap::TMapDefinition::dumpToTextStream_map_specific(std::ostream& out) const
+{
+	insertOpts.dumpToTextStream(out);
+	maintenanceOpts.dumpToTextStream(out);
+}
+
+mrpt::maps::CMetricMap* CObjectMap::internal_CreateFromMapDefinition(
+	const mrpt::maps::TMetricMapInitializer& def)
+{
+	const auto& definition = dynamic_cast<const TMapDefinition&>(def);
+	auto* map = new CObjectMap();
+	map->insertionOptions = definition.insertOpts;
+	map->maintenanceOptions = definition.maintenanceOpts;
+	return map;
+}
+
+}  // namespace semloop

@@ -1,0 +1,48 @@
+#include <semloop/config/Error.h>
+#include <semloop/observations/RawlogWriter.h>
+
+#include <filesystem>
+#include <stdexcept>
+
+#include "Archives.h"
+#include "GzFile.h"
+
+namespace semloop
+{
+struct RawlogWriter::Stream
+{
+	explicit Stream(const std::string& path) : file(path) {}
+	GzOutput file;
+	BufferArchive buffer;
+};
+
+RawlogWriter::RawlogWriter(const std::string& path)
+	: path_(path), stream_(std::make_unique<Stream>(partialPath(path)))
+{
+}
+
+RawlogWriter::~RawlogWriter() = default;
+
+void RawlogWriter::write(const mrpt::serialization::CSerializable& object)
+{
+	if (!stream_) throw std::logic_error("RawlogWriter: write() after close()");
+	// An object that cannot be serialised must not leave its first half in the file.
+	stream_->buffer.bytes.clear();
+	stream_->buffer.WriteObject(&object);
+	stream_->file.write(stream_->buffer.bytes.data(), stream_->buffer.bytes.size());
+}
+
+void RawlogWriter::close()
+{
+	if (!stream_) return;
+	stream_->file.close();
+	stream_.reset();
+	std::error_code error;
+	std::filesystem::rename(partialPath(path_), path_, error);
+	if (error)
+		throw InputError(
+			path_ + ": cannot be written (" + error.message() + "): the data are in " +
+			partialPath(path_));
+}
+
+}  // namespace semloop

@@ -1,0 +1,152 @@
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <sys/wait.h>
+
+#include <algorithm>
+#include <array>
+#include <cstdlib>
+#include <nlohmann/json.hpp>
+#include <sstream>
+#include <string>
+
+#include "TemporaryFolder.h"
+
+namespace semloop
+{
+namespace
+{
+using ::testing::HasSubstr;
+
+struct Run
+{
+	int exitCode = -1;
+	std::string output;
+	std::string errors;
+};
+
+class SemloopEval : public ::testing::Test
+{
+protected:
+	std::string path(const std::string& name) const { return folder_.file(name); }
+
+	std::string write(const std::string& name, const std::string& content) const
+	{
+		return folder_.write(name, content);
+	}
+
+	Run run(const std::string& arguments) const
+	{
+		const std::string command = SEMLOOP_BINARY_DIR "/bin/semloop-eval " + arguments + " >" +
+									path("stdout") + " 2>" + path("stderr");
+		const int status = std::system(command.c_str());
+		return {
+			WIFEXITED(status) ? WEXITSTATUS(status) : -1, readBytes(path("stdout")),
+			readBytes(path("stderr"))};
+	}
+
+private:
+	TemporaryFolder folder_;
+};
+
+/** Four corners of a unit square, a second apart, lifted by z and shifted by dx. */
+std::string square(double dx, double z)
+{
+	const std::array<std::array<double, 2>, 4> corners{{{0, 0}, {1, 0}, {1, 1}, {0, 1}}};
+	std::ostringstream out;
+	out << "# t tx ty tz qx qy qz qw\n";
+	for (std::size_t i = 0; i < corners.size(); i++)
+		out << 100 + i << " " << corners[i][0] + dx << " " << corners[i][1] << " " << z
+			<< " 0 0 0 1\n";
+	return out.str();
+}
+
+TEST_F(SemloopEval, FindsNoErrorInAShiftedCopyAfterAlignment)
+{
+	const auto result =
+		run("trajectory " + write("est.tum", square(5, -1)) + " " +
+			write("truth.tum", square(0, 0)) + " --json");
+	ASSERT_EQ(result.exitCode, 0) << result.errors;
+	const auto json = nlohmann::json::parse(result.output);
+	EXPECT_EQ(json["pairs"], 4);
+	EXPECT_NEAR(json["ate_m"]["rmse"], 0, 1e-9);
+	EXPECT_EQ(json["rpe_per_second"]["translation_m"]["count"], 3);
+	EXPECT_NEAR(json["rpe_per_metre"]["translation_m"]["max"], 0, 1e-9);
+}
+
+TEST_F(SemloopEval, MeasuresTheShiftWithoutAlignment)
+{
+	const auto result =
+		run("trajectory " + write("est.tum", square(0.3, 0.4)) + " " +
+			write("truth.tum", square(0, 0)) + " --align none --json");
+	ASSERT_EQ(result.exitCode, 0) << result.errors;
+	EXPECT_NEAR(nlohmann::json::parse(result.output)["ate_m"]["rmse"], 0.5, 1e-9);
+}
+
+TEST_F(SemloopEval, PrintsATableWhoseNumbersAreThoseOfTheJson)
+{
+	const auto result =
+		run("trajectory " + write("est.tum", square(0.25, 0)) + " " +
+			write("truth.tum", square(0, 0)) + " --align none");
+	ASSERT_EQ(result.exitCode, 0) << result.errors;
+	EXPECT_THAT(result.output, HasSubstr("4 of 4 estimated poses"));
+	EXPECT_THAT(result.output, HasSubstr("0.2500"));
+	EXPECT_EQ(result.errors, "");
+}
+
+TEST_F(SemloopEval, NamesAMissingFileAndExitsWith1)
+{
+	const auto result =
+		run("trajectory " + path("missing.tum") + " " + write("truth.tum", square(0, 0)));
+	EXPECT_EQ(result.exitCode, 1);
+	EXPECT_THAT(result.errors, HasSubstr("missing.tum"));
+	EXPECT_EQ(result.output, "");
+}
+
+TEST_F(SemloopEval, NamesTheLineOfAMalformedFileAndExitsWith1)
+{
+	const auto result =
+		run("trajectory " + write("est.tum", "100 0 0 0 0 0 0 1\n101 0 0 zero 0 0 0 1\n") + " " +
+			write("truth.tum", square(0, 0)));
+	EXPECT_EQ(result.exitCode, 1);
+	EXPECT_THAT(result.errors, HasSubstr("est.tum:2"));
+}
+
+TEST_F(SemloopEval, NamesBothFilesWhenTheirTimesDoNotMeetAndExitsWith1)
+{
+	const auto result = run(
+		"trajectory " + write("est.tum", "1 0 0 0 0 0 0 1\n2 0 0 0 0 0 0 1\n3 0 0 0 0 0 0 1\n") +
+		" " + write("truth.tum", square(0, 0)));
+	EXPECT_EQ(result.exitCode, 1);
+	EXPECT_THAT(result.errors, HasSubstr("est.tum"));
+	EXPECT_THAT(result.errors, HasSubstr("truth.tum"));
+	EXPECT_THAT(result.errors, HasSubstr("clock"));
+}
+
+TEST_F(SemloopEval, ExitsWith2OnWrongUsage)
+{
+	const std::string files =
+		write("est.tum", square(0, 0)) + " " + write("truth.tum", square(0, 0));
+	for (const std::string& arguments :
+		 {std::string(), std::string("trajectry ") + files, std::string("trajectory"),
+		  "trajectory " + files + " --align sim3",
+		  "trajectory " + files + " --max-time-difference -1"})
+	{
+		const auto result = run(arguments);
+		EXPECT_EQ(result.exitCode, 2) << arguments;
+		EXPECT_EQ(std::count(result.errors.begin(), result.errors.end(), '\n'), 1)
+			<< arguments << ": " << result.errors;
+	}
+}
+
+TEST_F(SemloopEval, ExplainsItself)
+{
+	const auto overview = run("--help");
+	EXPECT_EQ(overview.exitCode, 0);
+	EXPECT_THAT(overview.output, HasSubstr("trajectory"));
+	const auto command = run("trajectory --help");
+	EXPECT_EQ(command.exitCode, 0);
+	EXPECT_THAT(command.output, HasSubstr("--align"));
+}
+}  // namespace
+}  // namespace semloop

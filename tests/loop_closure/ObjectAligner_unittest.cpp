@@ -1,0 +1,250 @@
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <mrpt/config/CConfigFileMemory.h>
+#include <semloop/config/Error.h>
+#include <semloop/loop_closure/ObjectAligner.h>
+
+#include <cmath>
+
+#include "GraphFixtures.h"
+#include "SyntheticScene.h"
+
+namespace
+{
+using namespace semloop;
+using namespace semloop::synthetic;
+using testing::HasSubstr;
+
+/** A box, an upright box and a ball on a table: together they leave no direction open. */
+Scene threeObjects(const CPose3D& T = {})
+{
+	Scene scene;
+	scene.boxes.push_back(
+		{T + CPose3D(0.1, -0.4, 0.8, 0.3, 0, 0), {0.3, 0.2, 0.2}, {200, 0, 0}, 1, 0});
+	scene.boxes.push_back(
+		{T + CPose3D(-0.2, 0.4, 0.9, -0.5, 0, 0), {0.15, 0.25, 0.4}, {0, 200, 0}, 2, 0});
+	scene.spheres.push_back({T.composePoint(TPoint3D(0.2, 0.05, 0.82)), 0.12, {0, 0, 200}, 3, 0});
+	return scene;
+}
+
+/** Volumes in the world's frame, fused from cameras on an arc of the circle round the scene. */
+std::vector<TsdfVolume> fused(const Scene& scene, double fromAngle, double toAngle)
+{
+	TsdfOptions options;
+	options.voxelSize = 0.01;
+	options.truncation = 0.04;
+	std::vector<TsdfVolume> volumes(3, TsdfVolume(options));
+	for (int i = 0; i < 4; ++i)
+	{
+		const double angle = fromAngle + (toAngle - fromAngle) * i / 3;
+		const auto T_world_camera =
+			lookAt({1.6 * std::cos(angle), 1.6 * std::sin(angle), 1.5}, {0, 0, 0.8});
+		const auto view = renderView(scene, makeCamera(320, 240, 262), T_world_camera);
+		for (int k = 0; k < 3; ++k)
+			volumes[k].integrate(view.frame, view.masks[k + 1], T_world_camera);
+	}
+	return volumes;
+}
+
+std::vector<SurfacePair> pairsOf(
+	const std::vector<TsdfVolume>& query, const std::vector<TsdfVolume>& target)
+{
+	const auto centre = [](const TsdfVolume& volume)
+	{
+		const auto box = volume.boundingBox();
+		return (box->min + box->max) * 0.5;
+	};
+	std::vector<SurfacePair> pairs;
+	for (std::size_t k = 0; k < query.size(); ++k)
+		pairs.push_back(
+			{query[k].surface(), target[k].surface(), centre(query[k]), centre(target[k])});
+	return pairs;
+}
+
+/** The scene from the front; and moved by T, from the front and a side. */
+class ObjectAlignerOnThreeObjects : public testing::Test
+{
+protected:
+	static void SetUpTestSuite()
+	{
+		pairs = pairsOf(fused(threeObjects(), -0.7, 0.7), fused(threeObjects(T), -0.2, 1.5));
+	}
+	static void TearDownTestSuite() { pairs.clear(); }
+
+	static void expectFound(const ObjectAlignment& result)
+	{
+		EXPECT_TRUE(result.accepted) << result.reason;
+		// A voxel is 1 cm; the turn is about the scene's size of half a metre.
+		const TPoint3D middle(0, 0, 0.8);
+		EXPECT_LT(
+			result.T_target_query.composePoint(middle).distanceTo(T.composePoint(middle)), 0.01);
+		EXPECT_LT(fixtures::rotationAngle(result.T_target_query - T), 0.02);
+		EXPECT_GT(result.fitness, 0.5);
+		EXPECT_LT(result.rmse, 0.01);
+	}
+
+	static CPose3D semanticPose(double metres, double degrees)
+	{
+		const double angle = degrees * M_PI / 180;
+		// Turned about the middle of the scene, then shifted.
+		return T + CPose3D(metres, 0, 0.8, 0, 0, 0) + CPose3D(0, 0, 0, angle, 0, 0) +
+			   CPose3D(0, 0, -0.8, 0, 0, 0);
+	}
+
+	static const CPose3D T;
+	static std::vector<SurfacePair> pairs;
+};
+
+const CPose3D ObjectAlignerOnThreeObjects::T =
+	CPose3D::FromXYZYawPitchRoll(0.3, -0.2, 0.05, 0.25, 0.02, -0.01);
+std::vector<SurfacePair> ObjectAlignerOnThreeObjects::pairs;
+
+TEST_F(ObjectAlignerOnThreeObjects, RecoversAKnownMotionFromTheSemanticPose)
+{
+	const ObjectAligner aligner;
+	expectFound(aligner.align(pairs, semanticPose(0, 0)));
+	expectFound(aligner.align(pairs, semanticPose(0.1, 5)));
+	expectFound(aligner.align(pairs, semanticPose(-0.15, -10)));
+}
+
+TEST_F(ObjectAlignerOnThreeObjects, RecoversAKnownMotionWithFeatures)
+{
+	ObjectAligner aligner;
+	aligner.options.method = "fpfh_ransac";
+	expectFound(aligner.align(pairs, semanticPose(0.1, 5)));
+}
+
+TEST_F(ObjectAlignerOnThreeObjects, GivesTheSameBytesTwice)
+{
+	for (const std::string method : {"semantic_pose", "fpfh_ransac"})
+	{
+		ObjectAligner aligner;
+		aligner.options.method = method;
+		const auto a = aligner.align(pairs, semanticPose(0.1, 5));
+		const auto b = aligner.align(pairs, semanticPose(0.1, 5));
+		EXPECT_EQ(a.T_target_query.asString(), b.T_target_query.asString()) << method;
+		EXPECT_EQ(a.fitness, b.fitness) << method;
+		EXPECT_EQ(a.rmse, b.rmse) << method;
+	}
+}
+
+TEST_F(ObjectAlignerOnThreeObjects, RefusesDisjointSurfaces)
+{
+	auto apart = pairs;
+	for (auto& pair : apart)
+	{
+		for (auto& point : pair.query) point.position.x += 3;
+		pair.queryCentre.x += 3;
+		// The centres would agree, so that only the surfaces can say no.
+		for (auto& point : pair.target) point.position.z += 1;
+	}
+	const auto shifted = T + CPose3D(-3, 0, 0, 0, 0, 0);
+	const auto result = ObjectAligner().align(apart, shifted);
+	EXPECT_FALSE(result.accepted);
+	EXPECT_THAT(result.reason, HasSubstr("only 0 % of the surface points align"));
+	EXPECT_EQ(result.fitness, 0);
+	EXPECT_EQ(result.rmse, 0);
+}
+
+TEST_F(ObjectAlignerOnThreeObjects, RefusesAResultFarFromTheSemanticPose)
+{
+	ObjectAligner aligner;
+	aligner.options.maxCorrection = 0.02;
+	const auto result = aligner.align(pairs, semanticPose(0.1, 5));
+	EXPECT_FALSE(result.accepted);
+	EXPECT_THAT(result.reason, HasSubstr("away from the objects' centres, allowed are 0.02 m"));
+}
+
+TEST_F(ObjectAlignerOnThreeObjects, RefusesALargeResidual)
+{
+	ObjectAligner aligner;
+	aligner.options.maxRmse = 0.0002;
+	EXPECT_THAT(aligner.align(pairs, semanticPose(0, 0)).reason, HasSubstr("needed are 0.000 m"));
+}
+
+TEST_F(ObjectAlignerOnThreeObjects, FollowsTheFrameOfTheWorlds)
+{
+	// Far from the origin the same alignment, composed with where the worlds went.
+	const CPose3D A = CPose3D::FromXYZYawPitchRoll(20, -30, 1, 1, 0, 0);
+	auto far = pairs;
+	for (auto& pair : far)
+	{
+		for (auto& point : pair.query)
+		{
+			point.position =
+				mrpt::math::TPoint3Df(A.composePoint(mrpt::math::TPoint3D(point.position)));
+			point.normal =
+				mrpt::math::TVector3Df(A.rotateVector(mrpt::math::TVector3D(point.normal)));
+		}
+		pair.queryCentre = A.composePoint(pair.queryCentre);
+	}
+	const auto start = semanticPose(0.1, 5);
+	auto result = ObjectAligner().align(far, start + (CPose3D() - A));
+	result.T_target_query = result.T_target_query + A;
+	expectFound(result);
+}
+
+TEST(ObjectAligner, ABallTellsThePosition)
+{
+	// Seen from 30 degrees apart. The turn is open, so only the centre is compared.
+	std::vector<TsdfVolume> volumes(2);
+	Scene scene;
+	scene.spheres.push_back({{0, 0, 0.8}, 0.15, {0, 0, 200}, 1, 0});
+	for (int i = 0; i < 2; ++i)
+	{
+		const double angle = i * M_PI / 6;
+		const auto T_world_camera =
+			lookAt({1.5 * std::cos(angle), 1.5 * std::sin(angle), 1.2}, {0, 0, 0.8});
+		const auto view = renderView(scene, makeCamera(320, 240, 262), T_world_camera);
+		volumes[i].integrate(view.frame, view.masks[1], T_world_camera);
+	}
+	const auto start = CPose3D(0.1, 0, 0, 0, 0, 0);
+	const auto result = ObjectAligner().align(pairsOf({volumes[0]}, {volumes[1]}), start);
+	EXPECT_TRUE(result.accepted) << result.reason;
+	const TPoint3D centre(0, 0, 0.8);
+	EXPECT_LT(result.T_target_query.composePoint(centre).distanceTo(centre), 0.01);
+}
+
+TEST(ObjectAligner, WithoutSurfacesThereIsNothingToAlign)
+{
+	const auto T = CPose3D(1, 2, 3, 0, 0, 0);
+	for (const std::string method : {"semantic_pose", "fpfh_ransac"})
+	{
+		ObjectAligner aligner;
+		aligner.options.method = method;
+		const auto none = aligner.align(std::vector<SurfacePair>{}, T);
+		EXPECT_FALSE(none.accepted);
+		EXPECT_THAT(none.reason, HasSubstr("none of the 0 matched pairs has a surface"));
+		const auto bare = aligner.align(std::vector<SurfacePair>(3), T);
+		EXPECT_FALSE(bare.accepted);
+		EXPECT_EQ(bare.T_target_query, T) << "no better pose is known";
+	}
+}
+
+TEST(ObjectAligner, ASinglePointOnEachSideDoesNoHarm)
+{
+	SurfacePair pair;
+	pair.query = {{{1, 0, 0}, {0, 0, 1}, {}}};
+	pair.target = {{{1, 0, 0}, {0, 0, 1}, {}}};
+	pair.queryCentre = pair.targetCentre = {1, 0, 0};
+	for (const std::string method : {"semantic_pose", "fpfh_ransac"})
+	{
+		ObjectAligner aligner;
+		aligner.options.method = method;
+		const auto result = aligner.align(std::vector<SurfacePair>{pair}, CPose3D());
+		EXPECT_EQ(result.accepted, method == "semantic_pose") << result.reason;
+		EXPECT_TRUE(std::isfinite(result.T_target_query.x()));
+	}
+}
+
+TEST(ObjectAligner, AnUnknownMethodIsAUsageError)
+{
+	mrpt::config::CConfigFileMemory config;
+	config.write("alignment", "method", "guess");
+	ObjectAligner aligner;
+	EXPECT_THROW(aligner.configure(config, "alignment"), UsageError);
+	config.write("alignment", "method", "fpfh_ransac");
+	aligner.configure(config, "alignment");
+	EXPECT_EQ(aligner.options.method, "fpfh_ransac");
+}
+}  // namespace

@@ -1,0 +1,236 @@
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <mrpt/config/CConfigFileMemory.h>
+#include <semloop/config/Error.h>
+#include <semloop/loop_closure/SemanticLoopDetector.h>
+
+#include <cmath>
+
+#include "GraphFixtures.h"
+#include "SyntheticScene.h"
+
+namespace
+{
+using namespace semloop;
+using namespace semloop::fixtures;
+using testing::HasSubstr;
+using Decision = LoopVerdict::Decision;
+
+const std::string kSection = "loop_detection";
+
+TEST(SemanticLoopDetector, AcceptsADriftedCopy)
+{
+	const auto target = randomRoom(10, 5, 1);
+	const auto T = yawPose(0.4, -0.3, 0.05, 0.1);
+	const auto verdict =
+		SemanticLoopDetector().detect(moved(target, yawPose(0, 0, 0, 0) - T), target);
+	EXPECT_EQ(verdict.decision, Decision::Accepted) << verdict.reason;
+	EXPECT_LT(verdict.T_target_query.distanceTo(T), 1e-6);
+	EXPECT_EQ(verdict.queryObjects, 10);
+	EXPECT_EQ(verdict.candidateMatches, 10);
+	EXPECT_EQ(verdict.matches.size(), 10);
+	for (const auto& [query, targetId] : verdict.matches) EXPECT_EQ(query, targetId);
+	EXPECT_DOUBLE_EQ(verdict.matchedEdgeShare, 1);
+	EXPECT_GT(verdict.matchingScore, 10);
+	EXPECT_NEAR(verdict.centreRmse, 0, 1e-6);
+	EXPECT_THAT(verdict.reason, HasSubstr("10 of 10 objects"));
+}
+
+TEST(SemanticLoopDetector, EmptyGraphsAreRejected)
+{
+	const auto four = fourObjects();
+	EXPECT_EQ(
+		SemanticLoopDetector().detect({}, four).reason, "0 objects against 4: nothing to match");
+	const auto verdict = SemanticLoopDetector().detect(four, SemanticGraph{});
+	EXPECT_EQ(verdict.decision, Decision::Rejected);
+	EXPECT_EQ(verdict.reason, "4 objects against 0: nothing to match");
+}
+
+TEST(SemanticLoopDetector, NeedsHalfOfTheEdges)
+{
+	// Two of four vertices remain: one of six edges.
+	const auto query = fourObjects();
+	auto target = query;
+	target.vertices[2].label = target.vertices[3].label = "other";
+	const auto verdict = SemanticLoopDetector().detect(query, target);
+	EXPECT_EQ(verdict.decision, Decision::Rejected);
+	EXPECT_EQ(verdict.reason, "only 17 % of the 6 edges matched, needed are 50 %");
+	EXPECT_NEAR(verdict.matchedEdgeShare, 1.0 / 6, 1e-9);
+}
+
+TEST(SemanticLoopDetector, ARepeatedDeskIsAmbiguousWhateverTheDriftAllows)
+{
+	const auto desk = randomRoom(8, 8, 1);
+	const auto target = united(desk, moved(desk, yawPose(10, 0, 0, M_PI)));
+	SemanticLoopDetector detector;
+	detector.options.maxDrift = 1;  // would rule out one of the two places
+	const auto verdict = detector.detect(desk, target);
+	EXPECT_EQ(verdict.decision, Decision::Ambiguous) << verdict.reason;
+	EXPECT_DOUBLE_EQ(verdict.runnerUp, 1);
+}
+
+TEST(SemanticLoopDetector, RejectsACorrectionBeyondTheDriftLimit)
+{
+	const auto target = randomRoom(10, 5, 1);
+	const auto query = moved(target, yawPose(-3, 0, 0, 0));
+	SemanticLoopDetector detector;
+	detector.options.maxDrift = 2;
+	const auto verdict = detector.detect(query, target);
+	EXPECT_EQ(verdict.decision, Decision::Rejected);
+	EXPECT_EQ(verdict.reason, "the correction of 3.00 m is larger than the 2.00 m allowed");
+	detector.options.maxDrift = 4;
+	EXPECT_EQ(detector.detect(query, target).decision, Decision::Accepted);
+}
+
+TEST(SemanticLoopDetector, TheDriftIsMeasuredAtTheQueryAndNotAtTheOrigin)
+{
+	// 100 m from the origin a turn of 0.05 about the room itself moves nothing far.
+	const auto target = moved(randomRoom(10, 5, 1), yawPose(100, 0, 0, 0));
+	const auto about = yawPose(102.5, 2, 0, 0);
+	const auto query =
+		moved(target, about + yawPose(0, 0, 0, 0.05) + (yawPose(0, 0, 0, 0) - about));
+	SemanticLoopDetector detector;
+	detector.options.maxDrift = 0.5;
+	EXPECT_EQ(detector.detect(query, target).decision, Decision::Accepted);
+}
+
+TEST(SemanticLoopDetector, ReadsTheSectionsOfAllItsParts)
+{
+	mrpt::config::CConfigFileMemory config;
+	config.write(kSection, "matcher", std::string("semloop::SpectralMatcher"));
+	config.write(kSection, "min_edge_share", 0.25);
+	config.write(kSection, "min_inliers", 7);
+	config.write("graph_matching", "mu", 3.0);
+	config.write("alignment", "min_fitness", 0.125);
+	SemanticLoopDetector detector;
+	detector.configure(config, kSection);
+	EXPECT_EQ(detector.options.minEdgeShare, 0.25);
+	EXPECT_EQ(detector.options.verification.minInliers, 7);
+	EXPECT_EQ(detector.aligner.options.minFitness, 0.125);
+
+	config.write("graph_matching", "nu", 3.0);
+	EXPECT_THROW(detector.configure(config, kSection), UsageError);
+}
+
+TEST(SemanticLoopDetector, AnUnregisteredMatcherIsAnErrorThatListsTheRegisteredOnes)
+{
+	for (const std::string name : {"semloop::Guess", "semloop::SemanticLoopDetector"})
+	{
+		mrpt::config::CConfigFileMemory config;
+		config.write(kSection, "matcher", name);
+		SemanticLoopDetector detector;
+		try
+		{
+			detector.configure(config, kSection);
+			FAIL() << name;
+		}
+		catch (const UsageError& error)
+		{
+			EXPECT_THAT(error.what(), HasSubstr("[loop_detection] matcher = " + name));
+			EXPECT_THAT(error.what(), HasSubstr("semloop::SpectralMatcher"));
+		}
+	}
+}
+
+TEST(LoopVerdict, DecisionsHaveNames)
+{
+	EXPECT_STREQ(toString(Decision::Accepted), "accepted");
+	EXPECT_STREQ(toString(Decision::Rejected), "rejected");
+	EXPECT_STREQ(toString(Decision::Ambiguous), "ambiguous");
+}
+
+/** Five objects, mapped once where they stand and once more, later, by a drifted camera. */
+class SemanticLoopDetectorOnAMap : public testing::Test
+{
+protected:
+	static constexpr int kObjects = 5;
+
+	void SetUp() override
+	{
+		map.setLabels(LabelSet({"a", "b", "c", "d", "e"}));
+		target = mapScene(CPose3D());
+		query = mapScene(drift);
+	}
+
+	using CPose3D = mrpt::poses::CPose3D;
+
+	/** Ids of the scene's objects, added to the map by cameras that believe to be at wrong * truth. */
+	std::set<ObjectId> mapScene(const CPose3D& wrong)
+	{
+		using namespace semloop::synthetic;
+		Scene scene;
+		const double places[kObjects][2] = {
+			{0, -0.7}, {0.3, -0.2}, {-0.4, 0.1}, {0.2, 0.5}, {-0.1, 0.9}};
+		for (int i = 0; i < kObjects; ++i)
+			scene.boxes.push_back(
+				{CPose3D(places[i][0], places[i][1], 0.8 + 0.05 * i, 0.4 * i, 0, 0),
+				 {0.2 + 0.02 * i, 0.15, 0.15 + 0.05 * i},
+				 {200, 0, 0},
+				 i + 1,
+				 0});
+		std::set<ObjectId> ids;
+		std::vector<ObjectId> idOf(kObjects);
+		for (int view = 0; view < 3; ++view)
+		{
+			const auto T_world_camera = lookAt({1.6, 0.5 * view - 0.5, 1.6}, {0, 0.1, 0.8});
+			const auto image = renderView(scene, makeCamera(320, 240, 200), T_world_camera);
+			for (int i = 0; i < kObjects; ++i)
+			{
+				const auto instance = makeInstance(image.masks[i + 1], i);
+				const auto believed = wrong + T_world_camera;
+				if (view == 0)
+					ids.insert(idOf[i] = map.addObject(image.frame, instance, believed).value());
+				else
+					map.fuse(idOf[i], image.frame, instance, believed);
+			}
+		}
+		map.markCovisible(ids);
+		return ids;
+	}
+
+	const CPose3D drift = yawPose(0.5, -0.3, 0.05, 0.12);
+	CObjectMap map;
+	std::set<ObjectId> target, query;
+};
+
+TEST_F(SemanticLoopDetectorOnAMap, CorrectsTheDriftToAFractionOfAVoxel)
+{
+	const auto verdict = SemanticLoopDetector().detect(map, query, target);
+	ASSERT_EQ(verdict.decision, Decision::Accepted) << verdict.reason;
+	EXPECT_EQ(verdict.matches.size(), kObjects);
+	const auto corrected = verdict.T_target_query + drift;
+	EXPECT_LT(corrected.translation().norm(), 0.01);
+	EXPECT_LT(rotationAngle(corrected), 0.01);
+	EXPECT_GT(verdict.alignmentFitness, 0.8);
+	EXPECT_LT(verdict.alignmentRmse, 0.01);
+	EXPECT_THAT(verdict.reason, HasSubstr("surface points align"));
+}
+
+TEST_F(SemanticLoopDetectorOnAMap, RejectsWhenTheSurfacesDoNotAlign)
+{
+	SemanticLoopDetector detector;
+	detector.aligner.options.maxRmse = 1e-4;
+	const auto verdict = detector.detect(map, query, target);
+	EXPECT_EQ(verdict.decision, Decision::Rejected);
+	EXPECT_THAT(verdict.reason, HasSubstr("; but surfaces align to"));
+}
+
+TEST_F(SemanticLoopDetectorOnAMap, LeavesOutObjectsThatWereSeenTooSeldom)
+{
+	SemanticLoopDetector detector;
+	detector.options.minObservations = 4;
+	EXPECT_EQ(detector.detect(map, query, target).reason, "0 objects against 0: nothing to match");
+}
+
+TEST_F(SemanticLoopDetectorOnAMap, AMatcherThatCannotTakeTheGraphIsARejection)
+{
+	mrpt::config::CConfigFileMemory config;
+	config.write("graph_matching", "max_entries", 1);
+	SemanticLoopDetector detector;
+	detector.configure(config, kSection);
+	const auto verdict = detector.detect(map, query, target);
+	EXPECT_EQ(verdict.decision, Decision::Rejected);
+	EXPECT_EQ(verdict.queryObjects, kObjects);
+	EXPECT_THAT(verdict.reason, HasSubstr("max_entries"));
+}
+}  // namespace
