@@ -46,7 +46,7 @@ Scene makeScene(int columns)
 	for (int i = 0; i < 2 * columns; ++i)
 	{
 		const bool back = i >= columns;
-		const double spacing = 1.5 / columns, size = 0.33 * spacing * (1 + 0.25 * (i % 3));
+		const double spacing = 1.5 / columns, size = 0.36 * spacing * (1 + 0.25 * (i % 3));
 		const Vector3d centre(
 			(i % columns - 0.5 * (columns - 1)) * spacing, back ? 0.3 : -0.1, back ? 0.25 : -0.2);
 		const Vector3d half(size, 0.7 * size, 1.2 * size);

@@ -18,7 +18,7 @@ namespace
 {
 using ::testing::HasSubstr;
 
-struct Run
+struct Outcome
 {
 	int exitCode = -1;
 	std::string output;
@@ -35,7 +35,7 @@ protected:
 		return folder_.write(name, content);
 	}
 
-	Run run(const std::string& arguments) const
+	Outcome run(const std::string& arguments) const
 	{
 		const std::string command = SEMLOOP_BINARY_DIR "/bin/semloop-eval " + arguments + " >" +
 									path("stdout") + " 2>" + path("stderr");

@@ -35,7 +35,8 @@ std::unique_ptr<Run> mapRawlog(
 
 double absoluteError(const Trajectory& estimate, const std::string& truth)
 {
-	return absoluteTrajectoryError(estimate, readTumTrajectory(truth)).rmse;
+	return absoluteTrajectoryError(associateByTime(estimate, readTumTrajectory(truth)))
+		.translation.rmse;
 }
 
 /** What must not depend on time or machine. */
