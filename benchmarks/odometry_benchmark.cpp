@@ -54,7 +54,7 @@ void track(benchmark::State& state, const std::string& method, int refineIterati
 BENCHMARK_CAPTURE(track, rgbd_icp, std::string("rgbd_icp"), 10)->Unit(benchmark::kMillisecond);
 BENCHMARK_CAPTURE(track, rgbd, std::string("rgbd"), 10)->Unit(benchmark::kMillisecond);
 BENCHMARK_CAPTURE(track, icp, std::string("icp"), 10)->Unit(benchmark::kMillisecond);
-BENCHMARK_CAPTURE(track, rgbd_icp_without_refinement, std::string("rgbd_icp"), 0)
+BENCHMARK_CAPTURE(track, rgbd_without_refinement, std::string("rgbd"), 0)
 	->Unit(benchmark::kMillisecond);
 }  // namespace
 

@@ -56,5 +56,5 @@ function(semloop_add_tests name)
   target_compile_definitions(test-${name} PRIVATE
     SEMLOOP_SOURCE_DIR="${PROJECT_SOURCE_DIR}" SEMLOOP_BINARY_DIR="${PROJECT_BINARY_DIR}")
   semloop_compile_options(test-${name})
-  gtest_discover_tests(test-${name} TEST_PREFIX ${name}. DISCOVERY_TIMEOUT 60 PROPERTIES TIMEOUT 600)
+  gtest_discover_tests(test-${name} TEST_PREFIX ${name}. DISCOVERY_TIMEOUT 300 PROPERTIES TIMEOUT 600)
 endfunction()

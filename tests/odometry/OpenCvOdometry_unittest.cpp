@@ -77,7 +77,8 @@ TEST_P(OpenCvOdometryMethod, FollowsAKnownPath)
 	}
 }
 
-INSTANTIATE_TEST_SUITE_P(All, OpenCvOdometryMethod, ::testing::Values("rgbd_icp", "rgbd", "icp"));
+INSTANTIATE_TEST_SUITE_P(
+	All, OpenCvOdometryMethod, ::testing::Values("automatic", "rgbd_icp", "rgbd", "icp"));
 
 TEST(OpenCvOdometry, WorksWithoutTheRefinement)
 {
@@ -175,6 +176,21 @@ TEST(OpenCvOdometry, ABareWallLeavesTheMotionOpen)
 		expectSound(estimate);
 		EXPECT_EQ(estimate.status, i == 0 ? Status::Tracked : Status::Lost);
 	}
+}
+
+TEST(OpenCvOdometry, FollowsShapeWhereThereIsNoTexture)
+{
+	OpenCvOdometry odometry(testOptions());
+	OdometryEstimate estimate;
+	for (int i = 0; i < 6; i++)
+	{
+		auto frame = frameOnPath(i * kPeriod);
+		frame.color.setTo(cv::Scalar::all(128));
+		estimate = odometry.track(frame);
+		expectSound(estimate);
+		EXPECT_EQ(estimate.status, Status::Tracked) << estimate.reason;
+	}
+	expectPoseNear(estimate.T_odom_camera, truth(5), 0.02, 0.01);
 }
 
 TEST(OpenCvOdometry, AJumpIsLostAndNotBelieved)

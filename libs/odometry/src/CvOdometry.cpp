@@ -35,7 +35,7 @@ std::optional<CPose3D> fromMatrix(const cv::Mat& m)
 }
 
 cv::Ptr<cv::rgbd::Odometry> makeOdometry(
-	const OpenCvOdometryOptions& o, const mrpt::img::TCamera& camera)
+	const OpenCvOdometryOptions& o, const std::string& method, const mrpt::img::TCamera& camera)
 {
 	const cv::Mat K =
 		(cv::Mat_<double>(3, 3) << camera.fx(), 0, camera.cx(), 0, camera.fy(), camera.cy(), 0, 0,
@@ -53,10 +53,10 @@ cv::Ptr<cv::rgbd::Odometry> makeOdometry(
 		odometry->setMaxRotation(180);    // [deg]
 		return odometry;
 	};
-	if (o.method == "rgbd")
+	if (method == "rgbd")
 		return loosened(cv::rgbd::RgbdOdometry::create(
 			K, minDepth, maxDepth, difference, iterations, gradients, kPart));
-	if (o.method == "icp")
+	if (method == "icp")
 		return loosened(
 			cv::rgbd::ICPOdometry::create(K, minDepth, maxDepth, difference, kPart, iterations));
 	return loosened(cv::rgbd::RgbdICPOdometry::create(
@@ -72,16 +72,17 @@ cv::Mat depthInRange(const cv::Mat& depth, double minDepth, double maxDepth)
 }
 
 std::optional<CPose3D> alignWithOpenCv(
-	const OpenCvOdometryOptions& options, const mrpt::img::TCamera& camera,
-	cv::Ptr<cv::rgbd::OdometryFrame> reference, cv::Ptr<cv::rgbd::OdometryFrame> current,
-	const CPose3D& start, std::string& why)
+	const OpenCvOdometryOptions& options, const std::string& method,
+	const mrpt::img::TCamera& camera, cv::Ptr<cv::rgbd::OdometryFrame> reference,
+	cv::Ptr<cv::rgbd::OdometryFrame> current, const CPose3D& start, std::string& why)
 {
 	cv::Mat Rt;
 	bool found = false;
 	try
 	{
 		// OpenCV's source is the reference, its destination the current frame.
-		found = makeOdometry(options, camera)->compute(reference, current, Rt, toMatrix(start));
+		found =
+			makeOdometry(options, method, camera)->compute(reference, current, Rt, toMatrix(start));
 	}
 	catch (const cv::Exception& e)
 	{

@@ -148,10 +148,11 @@ std::shared_ptr<const OpenCvOdometry::Frame> OpenCvOdometry::prepare(const RgbdF
 }
 
 std::optional<OpenCvOdometry::Alignment> OpenCvOdometry::align(
-	const Frame& frame, const CPose3D& T_keyframe_camera, std::string& why) const
+	const Frame& frame, const std::string& method, const CPose3D& T_keyframe_camera,
+	std::string& why) const
 {
-	const auto coarse =
-		alignWithOpenCv(options_, frame.camera, keyframe_->cv, frame.cv, -T_keyframe_camera, why);
+	const auto coarse = alignWithOpenCv(
+		options_, method, frame.camera, keyframe_->cv, frame.cv, -T_keyframe_camera, why);
 	if (!coarse) return std::nullopt;
 
 	const DirectAlignmentOptions refinement{
@@ -185,18 +186,22 @@ std::optional<OpenCvOdometry::Alignment> OpenCvOdometry::alignFromSeveralStarts(
 	const CPose3D T_keyframe_lastGood = lostFrames_ > 0 ? CPose3D() : T_keyframe_previous;
 	const std::vector<CPose3D> starts{T_keyframe_previous + T_previous_camera, T_keyframe_lastGood};
 	const double frames = lostFrames_ + 1;
-	for (const auto& start : starts)
-	{
-		const auto alignment = align(frame, start, why);
-		if (!alignment) continue;
-		// More than the frames since the last good one allow: a wrong minimum.
-		const CPose3D motion = alignment->T_keyframe_camera - T_keyframe_lastGood;
-		const double angle = rotationAngle(motion);
-		if (motion.norm() <= frames * options_.maxTranslation &&
-			angle <= frames * options_.maxRotation)
-			return alignment;
-		why = "implausible motion of " + centimetres(motion.norm()) + " and " + degrees(angle);
-	}
+	const std::vector<std::string> methods = options_.method == "automatic"
+												 ? std::vector<std::string>{"rgbd", "rgbd_icp"}
+												 : std::vector<std::string>{options_.method};
+	for (const auto& method : methods)
+		for (const auto& start : starts)
+		{
+			const auto alignment = align(frame, method, start, why);
+			if (!alignment) continue;
+			// More than the frames since the last good one allow: a wrong minimum.
+			const CPose3D motion = alignment->T_keyframe_camera - T_keyframe_lastGood;
+			const double angle = rotationAngle(motion);
+			if (motion.norm() <= frames * options_.maxTranslation &&
+				angle <= frames * options_.maxRotation)
+				return alignment;
+			why = "implausible motion of " + centimetres(motion.norm()) + " and " + degrees(angle);
+		}
 	return std::nullopt;
 }
 

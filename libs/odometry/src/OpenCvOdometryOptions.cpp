@@ -5,8 +5,9 @@ namespace semloop
 void OpenCvOdometryOptions::describe(OptionFields& f)
 {
 	f.choice(
-		"method", method, {"rgbd_icp", "rgbd", "icp"},
-		"OpenCV's cost: brightness and point to plane, brightness only, point to plane only");
+		"method", method, {"automatic", "rgbd_icp", "rgbd", "icp"},
+		"OpenCV's cost: rgbd = brightness, icp = point to plane, rgbd_icp = both; automatic = rgbd "
+		"and, where that finds nothing, rgbd_icp");
 	f.integer("pyramid_levels", pyramidLevels, 1, 6, "image sizes, each half the one before");
 	f.integer("iterations", iterations, 1, 100, "Gauss-Newton iterations on each level");
 	f.number("min_depth", minDepth, 0, 100, "nearer depth is not used [m]");

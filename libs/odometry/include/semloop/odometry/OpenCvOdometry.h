@@ -13,7 +13,7 @@ namespace semloop
 {
 struct OpenCvOdometryOptions : Options
 {
-	std::string method = "rgbd_icp";
+	std::string method = "automatic";
 	int pyramidLevels = 4;
 	int iterations = 7;
 	double minDepth = 0.3;             //!< [m]
@@ -46,7 +46,8 @@ protected:
 
 /** Dense RGB-D odometry: OpenCV's (cv::rgbd: photometric after Steinbruecker et al., ICCV Workshops
  *  2011; point to plane after Newcombe et al., ISMAR 2011; or both), refined to a fraction of a pixel
- *  by DirectAlignment.
+ *  by a direct alignment (DVO: Kerl et al., ICRA and IROS 2013) that weighs brightness and point to
+ *  plane. Where brightness alone finds no start, the method `automatic` takes both.
  *
  *  A frame is aligned with a keyframe, which is renewed when the camera has moved or turned away
  *  from it: between keyframes no drift adds up. Keyframes off: with the frame before.
@@ -55,7 +56,8 @@ protected:
  *  C_keyframe,camera = covarianceScale * H^-1 + (floor + 2 % of the motion from the keyframe)^2; of
  *  two frames of one keyframe
  *  C = C_keyframe,camera + Ad(T_camera,previous) C_keyframe,previous Ad^T. Neighbouring frames share the
- *  keyframe's errors, so that a sum of such covariances over many frames is pessimistic.
+ *  keyframe's errors, so that a sum of such covariances over many frames is pessimistic; with
+ *  keyframes off it is optimistic, as it takes the errors of neighbouring frames for independent.
  *
  *  Lost, and the constant-velocity model in its place, when: the frame cannot be used (no image,
  *  another size or camera, too little valid depth); OpenCV finds no solution; the motion against the
@@ -86,7 +88,8 @@ private:
 	std::shared_ptr<const Frame> prepare(const RgbdFrame& frame) const;
 	/** Empty, and why, when nothing plausible is found. */
 	std::optional<Alignment> align(
-		const Frame& frame, const mrpt::poses::CPose3D& T_keyframe_camera, std::string& why) const;
+		const Frame& frame, const std::string& method,
+		const mrpt::poses::CPose3D& T_keyframe_camera, std::string& why) const;
 	std::optional<Alignment> alignFromSeveralStarts(
 		const Frame& frame, const mrpt::poses::CPose3D& T_previous_camera, std::string& why) const;
 	bool needsKeyframe(const Alignment& alignment) const;

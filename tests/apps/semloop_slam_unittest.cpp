@@ -1,0 +1,149 @@
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <sys/wait.h>
+
+#include <cstdlib>
+#include <nlohmann/json.hpp>
+
+#include "../slam/SyntheticRun.h"
+
+using namespace semloop;
+using namespace semloop::synthetic;
+using testing::HasSubstr;
+
+namespace
+{
+class SemloopSlam : public testing::Test
+{
+protected:
+	/** The exit code; what was printed is in files out and err. */
+	int run(const std::string& arguments) const
+	{
+		const std::string command = "'" SEMLOOP_BINARY_DIR "/bin/semloop-slam' " + arguments +
+									" > '" + folder_.file("out") + "' 2> '" + folder_.file("err") +
+									"'";
+		const int status = std::system(command.c_str());
+		return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
+	}
+	std::string messages() const { return readBytes(folder_.file("err")); }
+	nlohmann::json summary() const
+	{
+		return nlohmann::json::parse(readBytes(folder_.file("result/summary.json")));
+	}
+
+	RecordedRun recordShortRun() const
+	{
+		RunOptions options;
+		options.degrees = 40;
+		return recordRun(folder_, options);
+	}
+	std::string arguments(const RecordedRun& recorded) const
+	{
+		return "-c '" SEMLOOP_SOURCE_DIR "/config_ini/recorded_odometry.ini' -i '" +
+			   recorded.rawlog + "' -o '" + folder_.file("result") +
+			   "' --set 'odometry.file=" + recorded.truth + "' --instances '" + recorded.rawlog +
+			   "'";
+	}
+
+	const TemporaryFolder folder_;
+};
+}  // namespace
+
+TEST_F(SemloopSlam, MapsARawlogAndWritesItsResults)
+{
+	const RecordedRun recorded = recordShortRun();
+	ASSERT_EQ(run(arguments(recorded)), 0) << messages();
+	EXPECT_EQ(summary()["frames"], recorded.frames);
+	EXPECT_EQ(summary()["frames_skipped"], 0);
+	EXPECT_THAT(readBytes(folder_.file("out")), HasSubstr("9 frames"));
+}
+
+TEST_F(SemloopSlam, StopsAfterMaxFrames)
+{
+	const RecordedRun recorded = recordShortRun();
+	ASSERT_EQ(run(arguments(recorded) + " --max-frames 4"), 0) << messages();
+	EXPECT_EQ(summary()["frames"], 4);
+	EXPECT_EQ(summary()["ended_by"], "--max-frames");
+}
+
+TEST_F(SemloopSlam, ACutRawlogKeepsTheResultsSoFarAndFails)
+{
+	const RecordedRun recorded = recordShortRun();
+	const std::string bytes = readBytes(recorded.rawlog);
+	const std::string cut = folder_.write("cut.rawlog", bytes.substr(0, bytes.size() / 2));
+	const std::string arguments =
+		"-c '" SEMLOOP_SOURCE_DIR "/config_ini/recorded_odometry.ini' -i '" + cut + "' -o '" +
+		folder_.file("result") + "' --set 'odometry.file=" + recorded.truth + "' --instances '" +
+		recorded.rawlog + "'";
+	EXPECT_EQ(run(arguments), 1);
+	EXPECT_THAT(messages(), HasSubstr(cut));
+	EXPECT_GT(summary()["frames"], 0);
+	EXPECT_LT(summary()["frames"], recorded.frames);
+}
+
+TEST_F(SemloopSlam, AnOverrideChangesTheRunButNotTheFile)
+{
+	const RecordedRun recorded = recordShortRun();
+	const std::string ini = SEMLOOP_SOURCE_DIR "/config_ini/recorded_odometry.ini";
+	const std::string before = readBytes(ini);
+	ASSERT_EQ(run(arguments(recorded) + " --set slam.min_observations=1000"), 0) << messages();
+	EXPECT_EQ(readBytes(ini), before);
+	EXPECT_TRUE(summary()["objects_by_label"].empty());
+}
+
+TEST_F(SemloopSlam, WrongUsageExitsWithTwoAndOneLine)
+{
+	const RecordedRun recorded = recordShortRun();
+	for (const char* wrong :
+		 {" --set odometry.dirft=1", " --set slam.level=perhaps", " --set nonsense",
+		  " --set modules.odometry=semloop::Teleporter", " --set tracing.gate=1"})
+	{
+		EXPECT_EQ(run(arguments(recorded) + wrong), 2) << wrong;
+		const std::string text = messages();
+		EXPECT_EQ(std::count(text.begin(), text.end(), '\n'), 1) << text;
+	}
+	EXPECT_EQ(run(""), 2);
+	EXPECT_EQ(run("--no-such-flag"), 2);
+}
+
+TEST_F(SemloopSlam, FilesThatAreNotThereAreNamed)
+{
+	const RecordedRun recorded = recordShortRun();
+	EXPECT_EQ(
+		run("-c /no/such.ini -i '" + recorded.rawlog + "' -o '" + folder_.file("r") + "'"), 1);
+	EXPECT_THAT(messages(), HasSubstr("/no/such.ini"));
+	RecordedRun missing = recorded;
+	missing.rawlog = "/no/such.rawlog";
+	EXPECT_EQ(run(arguments(missing)), 1);
+	EXPECT_THAT(messages(), HasSubstr("/no/such.rawlog"));
+}
+
+TEST_F(SemloopSlam, AFolderThatCannotBeWrittenIsNamedBeforeTheWorkBegins)
+{
+	const RecordedRun recorded = recordShortRun();
+	const std::string file = folder_.write("occupied", "a file, not a folder");
+	EXPECT_EQ(
+		run("-c '" SEMLOOP_SOURCE_DIR "/config_ini/recorded_odometry.ini' -i '" + recorded.rawlog +
+			"' -o '" + file + "'"),
+		1);
+	EXPECT_THAT(messages(), HasSubstr(file));
+}
+
+TEST_F(SemloopSlam, ARecordingWithoutOneUsableFrameFails)
+{
+	RawlogWriter(folder_.file("empty.rawlog")).close();
+	RecordedRun recorded;
+	recorded.rawlog = folder_.file("empty.rawlog");
+	recorded.truth = folder_.write("truth.tum", "1000 0 0 0 0 0 0 1\n");
+	EXPECT_EQ(run(arguments(recorded)), 1);
+	EXPECT_THAT(messages(), HasSubstr("no usable RGB-D frame"));
+	EXPECT_EQ(summary()["frames"], 0);
+}
+
+TEST_F(SemloopSlam, HelpIsAnswered)
+{
+	EXPECT_EQ(run("--help"), 0);
+	EXPECT_THAT(readBytes(folder_.file("out")), HasSubstr("--set"));
+	EXPECT_EQ(run("--help-config"), 0);
+	EXPECT_THAT(readBytes(folder_.file("out")), HasSubstr("[matching_cost]"));
+}
