@@ -154,8 +154,9 @@ protected:
 
 	using CPose3D = mrpt::poses::CPose3D;
 
-	/** Ids of the scene's objects, added to the map by cameras that believe to be at wrong * truth. */
-	std::set<ObjectId> mapScene(const CPose3D& wrong)
+	/** Ids of the scene's objects, added to the map by cameras that believe to be at wrong * truth;
+	 *  the last object stands lastMoved further in x. */
+	std::set<ObjectId> mapScene(const CPose3D& wrong, double lastMoved = 0)
 	{
 		using namespace semloop::synthetic;
 		Scene scene;
@@ -163,7 +164,9 @@ protected:
 			{0, -0.7}, {0.3, -0.2}, {-0.4, 0.1}, {0.2, 0.5}, {-0.1, 0.9}};
 		for (int i = 0; i < kObjects; ++i)
 			scene.boxes.push_back(
-				{CPose3D(places[i][0], places[i][1], 0.8 + 0.05 * i, 0.4 * i, 0, 0),
+				{CPose3D(
+					 places[i][0] + (i + 1 == kObjects ? lastMoved : 0), places[i][1],
+					 0.8 + 0.05 * i, 0.4 * i, 0, 0),
 				 {0.2 + 0.02 * i, 0.15, 0.15 + 0.05 * i},
 				 {200, 0, 0},
 				 i + 1,
@@ -188,6 +191,14 @@ protected:
 		return ids;
 	}
 
+	/** For objects seen in three frames. */
+	static SemanticLoopDetector makeDetector()
+	{
+		SemanticLoopDetector detector;
+		detector.options.minObservations = 3;
+		return detector;
+	}
+
 	const CPose3D drift = yawPose(0.5, -0.3, 0.05, 0.12);
 	CObjectMap map;
 	std::set<ObjectId> target, query;
@@ -195,7 +206,7 @@ protected:
 
 TEST_F(SemanticLoopDetectorOnAMap, CorrectsTheDriftToAFractionOfAVoxel)
 {
-	const auto verdict = SemanticLoopDetector().detect(map, query, target);
+	const auto verdict = makeDetector().detect(map, query, target);
 	ASSERT_EQ(verdict.decision, Decision::Accepted) << verdict.reason;
 	EXPECT_EQ(verdict.matches.size(), kObjects);
 	const auto corrected = verdict.T_target_query + drift;
@@ -204,11 +215,32 @@ TEST_F(SemanticLoopDetectorOnAMap, CorrectsTheDriftToAFractionOfAVoxel)
 	EXPECT_GT(verdict.alignmentFitness, 0.8);
 	EXPECT_LT(verdict.alignmentRmse, 0.01);
 	EXPECT_THAT(verdict.reason, HasSubstr("surface points align"));
+
+	ASSERT_EQ(verdict.alignments.size(), kObjects);
+	for (const auto& alignment : verdict.alignments)
+	{
+		EXPECT_LT((alignment.T_target_query + drift).translation().norm(), 0.03);
+		// At least as certain as the centre alone.
+		EXPECT_GE(alignment.information(0, 0), 1 / 0.09);
+	}
+}
+
+TEST_F(SemanticLoopDetectorOnAMap, AnObjectThatTheSurfacesOfTheOthersRefuteIsNoMatch)
+{
+	// A pose of the centres spreads the 0.45 m over all, within the gates; the other four surfaces fit exactly.
+	const auto moved = mapScene(drift, 0.45);
+	const auto verdict = makeDetector().detect(map, moved, target);
+	ASSERT_EQ(verdict.decision, Decision::Accepted) << verdict.reason;
+	EXPECT_EQ(verdict.candidateMatches, kObjects);
+	ASSERT_EQ(verdict.matches.size(), kObjects - 1U);
+	EXPECT_EQ(verdict.alignments.size(), kObjects - 1U);
+	for (const auto& match : verdict.matches) EXPECT_NE(match.first, *moved.rbegin());
+	EXPECT_LT((verdict.T_target_query + drift).translation().norm(), 0.02);
 }
 
 TEST_F(SemanticLoopDetectorOnAMap, RejectsWhenTheSurfacesDoNotAlign)
 {
-	SemanticLoopDetector detector;
+	SemanticLoopDetector detector = makeDetector();
 	detector.aligner.options.maxRmse = 1e-4;
 	const auto verdict = detector.detect(map, query, target);
 	EXPECT_EQ(verdict.decision, Decision::Rejected);
@@ -226,6 +258,7 @@ TEST_F(SemanticLoopDetectorOnAMap, AMatcherThatCannotTakeTheGraphIsARejection)
 {
 	mrpt::config::CConfigFileMemory config;
 	config.write("graph_matching", "max_entries", 1);
+	config.write(kSection, "min_observations", 3);
 	SemanticLoopDetector detector;
 	detector.configure(config, kSection);
 	const auto verdict = detector.detect(map, query, target);

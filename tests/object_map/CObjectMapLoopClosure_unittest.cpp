@@ -54,6 +54,8 @@ TEST(CObjectMapLoopClosure, DriftMakesDuplicatesThatAMoveBringsTogetherAndAMerge
 	auto duplicates = map.findDuplicates();
 	std::sort(duplicates.begin(), duplicates.end());
 	EXPECT_EQ(duplicates, (Pairs{{0, 2}, {1, 3}}));
+	EXPECT_EQ(map.findDuplicates(std::set<ObjectId>{0, 1, 3}), (Pairs{{1, 3}}));
+	EXPECT_EQ(map.findDuplicates(std::set<ObjectId>{}), Pairs{});
 
 	for (const auto& [kept, absorbed] : map.findDuplicates()) map.mergeObjects(kept, absorbed);
 	ASSERT_EQ(map.objects().size(), 2U);

@@ -76,6 +76,20 @@ TEST(CObjectMapPrediction, WhatTheDepthMeasuresInFrontHidesAnObject)
 	EXPECT_EQ(map.predict(view.frame.camera, T_world_camera).size(), 2U);
 }
 
+TEST(CObjectMapPrediction, ObjectsThatAreLeftOutNeitherAppearNorHide)
+{
+	const CObjectMap map = mapOf(ballAndBox(), {kCup, kBook});
+	const CPose3D T_world_camera = lookAt({1.3, 0, 0.85}, {0, 0, 0.85});
+	const auto both = map.predict(testCamera(), T_world_camera);
+	ASSERT_EQ(both.size(), 2U);
+	const auto far = both[1].id;
+	const auto alone = map.predict(testCamera(), T_world_camera, {}, std::set<ObjectId>{far});
+	ASSERT_EQ(alone.size(), 1U);
+	EXPECT_EQ(alone[0].id, far);
+	EXPECT_DOUBLE_EQ(alone[0].visibleShare, 1.0);
+	EXPECT_TRUE(map.predict(testCamera(), T_world_camera, {}, std::set<ObjectId>{}).empty());
+}
+
 TEST(CObjectMapPrediction, ObjectsOutsideOfTheViewAreNotPredicted)
 {
 	const CObjectMap map = mapOf(ballAndBox(), {kCup, kBook});

@@ -103,67 +103,6 @@ TEST(PoseGraph, RefusesAnEdgeFromANodeToItself)
 		std::invalid_argument);
 }
 
-TEST(PoseGraph, MergingMovesTheEdgesOfTheAbsorbedObject)
-{
-	CeresPoseGraph graph = twoCopies();
-	const PoseEdge before = graph.edges()[2];
-	const auto T_kept_absorbed = pose(0.05, 0, 0, 0.2);
-	graph.mergeObjects(0, 1, T_kept_absorbed, true);
-
-	EXPECT_FALSE(graph.has(NodeId::object(1)));
-	ASSERT_EQ(graph.edges().size(), 3u);
-	const PoseEdge& moved = graph.edges()[2];
-	EXPECT_EQ(moved.a, NodeId::object(0));
-	EXPECT_EQ(moved.b, NodeId::camera(1));
-	EXPECT_EQ(moved.kind, Kind::Loop);
-	EXPECT_LT(difference(moved.Z_a_b, T_kept_absorbed + before.Z_a_b), 1e-12);
-	EXPECT_EQ(moved.information, before.information);
-	EXPECT_EQ(graph.edges()[1].kind, Kind::Observation) << "the kept object's own edge";
-}
-
-TEST(PoseGraph, MergingWithoutALoopKeepsTheKindOfTheEdges)
-{
-	CeresPoseGraph graph = twoCopies();
-	graph.mergeObjects(0, 1, {}, false);
-	EXPECT_EQ(graph.edges()[2].kind, Kind::Observation);
-}
-
-TEST(PoseGraph, MergingObjectsThatStandAsMeasuredDoesNotChangeTheCost)
-{
-	// Wherever the absorbed object stands in an edge, first or second.
-	CeresPoseGraph graph = twoCopies();
-	std::mt19937 random(8);
-	const PoseEdge turned{
-		Kind::Observation, NodeId::camera(0), NodeId::object(1), pose(2, 1.3, 0.1, 0.2),
-		randomInformation(random)};
-	graph.addEdge(turned);
-	graph.setNode(NodeId::camera(1), pose(1.1, 0.2, 0.1, 0.5));
-	const double before = cost(graph);
-	ASSERT_GT(before, 0.01);
-	const auto T_kept_absorbed = -graph.pose(NodeId::object(0)) + graph.pose(NodeId::object(1));
-	graph.mergeObjects(0, 1, T_kept_absorbed, true);
-	EXPECT_EQ(graph.edges().back().b, NodeId::object(0));
-	EXPECT_NEAR(cost(graph), before, 1e-10 * before);
-}
-
-TEST(PoseGraph, MergingDropsAnEdgeBetweenTheTwo)
-{
-	CeresPoseGraph graph = twoCopies();
-	graph.addEdge({Kind::Loop, NodeId::object(1), NodeId::object(0), {}, Matrix6::Identity()});
-	graph.mergeObjects(0, 1, {}, true);
-	EXPECT_EQ(graph.edges().size(), 3u);
-	for (const PoseEdge& edge : graph.edges()) EXPECT_FALSE(edge.a == edge.b);
-}
-
-TEST(PoseGraph, RefusesToMergeWhatIsNotThere)
-{
-	CeresPoseGraph graph = twoCopies();
-	EXPECT_THROW(graph.mergeObjects(0, 7, {}, true), std::invalid_argument);
-	EXPECT_THROW(graph.mergeObjects(7, 0, {}, true), std::invalid_argument);
-	EXPECT_THROW(graph.mergeObjects(0, 0, {}, true), std::invalid_argument);
-	EXPECT_EQ(graph.nodes().size(), 4u);
-}
-
 TEST(PoseGraph, RemovingAnObjectTakesItsEdgesAlong)
 {
 	CeresPoseGraph graph = twoCopies();

@@ -20,13 +20,12 @@ const CPose3D oneMetre(1, 0, 0, 0, 0, 0);
 TEST(LocalMap, IsEmptyAtFirst)
 {
 	EXPECT_TRUE(twoMetreMap().objects().empty());
-	EXPECT_TRUE(twoMetreMap().query().empty());
 }
 
 TEST(LocalMap, KeepsAnObjectForItsLengthOfPath)
 {
 	LocalMap map = twoMetreMap();
-	map.see(7, true);
+	map.see(7);
 	map.advance(oneMetre);
 	map.advance(oneMetre);
 	EXPECT_TRUE(map.contains(7));
@@ -41,46 +40,38 @@ TEST(LocalMap, CountsTurningAsPath)
 	EXPECT_NEAR(map.path(), 0.5, 1e-12);
 }
 
-TEST(LocalMap, AnObjectThatComesBackIsRevisitedAndNoPartOfTheQuery)
+TEST(LocalMap, AnObjectThatStaysInViewStays)
 {
 	LocalMap map = twoMetreMap();
-	map.see(1, true);
-	for (int i = 0; i < 3; ++i) map.advance(oneMetre);
-	map.see(1, false);
-	map.see(2, true);
-	EXPECT_EQ(map.objects(), (Ids{1, 2}));
-	EXPECT_TRUE(map.isRevisited(1));
-	EXPECT_EQ(map.query(), Ids{2});
-}
-
-TEST(LocalMap, AnObjectThatStaysInViewIsNotRevisited)
-{
-	LocalMap map = twoMetreMap();
-	map.see(1, true);
+	map.see(1);
 	for (int i = 0; i < 5; ++i)
 	{
 		map.advance(oneMetre);
-		map.see(1, false);
+		map.see(1);
 	}
-	EXPECT_FALSE(map.isRevisited(1));
+	EXPECT_EQ(map.objects(), Ids{1});
 }
 
-TEST(LocalMap, AfterALoopClosureWhatIsInViewBelongsToThisTime)
+TEST(LocalMap, AMergedObjectWasSeenWhenOneOfTheTwoWas)
 {
 	LocalMap map = twoMetreMap();
-	map.see(1, true);
-	for (int i = 0; i < 3; ++i) map.advance(oneMetre);
-	map.see(2, true);
+	map.see(1);
+	map.advance(oneMetre);
+	map.see(2);
 	map.merge(1, 2);
-	map.loopClosed();
-	EXPECT_EQ(map.query(), Ids{1});
-	EXPECT_FALSE(map.contains(2));
+	EXPECT_EQ(map.objects(), Ids{1});
+	map.advance(oneMetre);
+	map.advance(CPose3D(0.5, 0, 0, 0, 0, 0));
+	EXPECT_TRUE(map.contains(1));  // 1.5 m after 2 was seen, 2.5 m after 1 itself
 }
 
 TEST(LocalMap, ARemovedObjectIsGone)
 {
 	LocalMap map = twoMetreMap();
-	map.see(1, true);
+	map.see(1);
+	map.see(2);
 	map.remove(1);
+	EXPECT_EQ(map.objects(), Ids{2});
+	map.clear();
 	EXPECT_TRUE(map.objects().empty());
 }

@@ -54,11 +54,10 @@ void addSurfaces(
 }
 
 void addCentres(
-	NormalEquations& equations, const AlignmentProblem& problem, const Eigen::Isometry3d& T,
-	double sigma)
+	NormalEquations& equations, const CloudPairs& pairs, const Eigen::Isometry3d& T, double sigma)
 {
-	const double scale = 1 / (sigma * sigma * static_cast<double>(problem.pairs.size()));
-	for (const auto& pair : problem.pairs)
+	const double scale = 1 / (sigma * sigma * pairs.count());
+	for (const auto& pair : pairs)
 	{
 		const Eigen::Vector3d centre = T * pair.queryCentre;
 		for (int axis = 0; axis < 3; ++axis)
@@ -66,6 +65,15 @@ void addCentres(
 				alongDirection(centre, Eigen::Vector3d::Unit(axis)),
 				centre[axis] - pair.targetCentre[axis], scale);
 	}
+}
+
+void addRotation(NormalEquations& equations, const Eigen::Isometry3d& T, const RotationPrior& prior)
+{
+	const Eigen::AngleAxisd error(T.linear() * prior.expected.transpose());
+	for (int axis = 0; axis < 3; ++axis)
+		equations.add(
+			Vector6d::Unit(axis), error.angle() * error.axis()[axis],
+			1 / mrpt::square(prior.sigma[axis]));
 }
 
 Eigen::Isometry3d motion(const Vector6d& x)
@@ -88,12 +96,11 @@ double Correspondences::rmse() const
 }
 
 Correspondences findCorrespondences(
-	const AlignmentProblem& problem, const Eigen::Isometry3d& T, double maxDistance,
-	double maxNormalAngle)
+	const CloudPairs& pairs, const Eigen::Isometry3d& T, double maxDistance, double maxNormalAngle)
 {
 	const double leastCosine = std::cos(maxNormalAngle);
 	Correspondences result;
-	for (const auto& pair : problem.pairs)
+	for (const auto& pair : pairs)
 		for (Eigen::Index i = 0; i < pair.query.size(); ++i)
 		{
 			const Eigen::Vector3d point = T * pair.query.points.col(i);
@@ -107,20 +114,21 @@ Correspondences findCorrespondences(
 	return result;
 }
 
-JointRefinement refineJointly(
-	const AlignmentProblem& problem, const Eigen::Isometry3d& start,
+Refinement refine(
+	const CloudPairs& pairs, const Eigen::Isometry3d& start, const RotationPrior& prior,
 	const ObjectAlignerOptions& options)
 {
-	JointRefinement result;
+	Refinement result;
 	result.T = start;
 	double distance = std::max(options.startDistance, options.endDistance);
 	while (result.iterations < options.maxIterations)
 	{
 		++result.iterations;
-		const auto found = findCorrespondences(problem, result.T, distance, options.maxNormalAngle);
+		const auto found = findCorrespondences(pairs, result.T, distance, options.maxNormalAngle);
 		NormalEquations equations;
 		addSurfaces(equations, found, distance, options.surfaceSigma);
-		addCentres(equations, problem, result.T, options.centreSigma);
+		addCentres(equations, pairs, result.T, options.centreSigma);
+		addRotation(equations, result.T, prior);
 		const Vector6d step = -equations.H.ldlt().solve(equations.g);
 		result.T = motion(step) * result.T;
 		result.T.linear() = Eigen::Quaterniond(result.T.linear()).normalized().matrix();
@@ -130,6 +138,32 @@ JointRefinement refineJointly(
 		distance = std::max(options.endDistance, kShrink * distance);
 	}
 	return result;
+}
+
+Matrix6d informationOf(
+	const CloudPair& pair, const Eigen::Isometry3d& T, const ObjectAlignerOptions& options)
+{
+	Matrix6d information = Matrix6d::Zero();
+	information.topLeftCorner<3, 3>().setIdentity();
+	information.topLeftCorner<3, 3>() /= mrpt::square(options.centreSigma);
+	information.bottomRightCorner<3, 3>().setIdentity();
+	information.bottomRightCorner<3, 3>() /= mrpt::square(options.rotationSigma);
+
+	const auto found =
+		findCorrespondences({&pair, &pair + 1}, T, options.endDistance, options.maxNormalAngle);
+	const double scale = 1 / (mrpt::square(options.surfaceSigma) *
+							  std::max<double>(1, static_cast<double>(found.items.size())));
+	for (const auto& item : found.items)
+	{
+		const Eigen::Vector3d normal =
+			T.linear().transpose() * pair.target.normals.col(item.target);
+		const Eigen::Vector3d point = pair.query.points.col(item.query) - pair.queryCentre;
+		Vector6d jacobian;
+		jacobian << normal, point.cross(normal);
+		information.noalias() +=
+			scale * tukey(item.residual, options.endDistance) * jacobian * jacobian.transpose();
+	}
+	return information;
 }
 
 }  // namespace semloop

@@ -34,7 +34,7 @@ double correctionOf(
 	double sum = 0;
 	for (const auto& pair : problem.pairs)
 		sum += (a * pair.query.points - b * pair.query.points).squaredNorm();
-	return std::sqrt(sum / static_cast<double>(problem.queryPoints()));
+	return std::sqrt(sum / static_cast<double>(problem.all().queryPoints()));
 }
 
 template <class... Numbers>
@@ -62,6 +62,47 @@ std::string objection(
 			options.maxCorrection);
 	return {};
 }
+/** Only the centres are known: they coincide, under the joint rotation. */
+MatchAlignment alignCentres(
+	const SurfacePair& pair, const mrpt::poses::CPose3D& T_joint,
+	const ObjectAlignerOptions& options)
+{
+	MatchAlignment result;
+	result.T_target_query = T_joint;
+	const auto shift = pair.targetCentre - T_joint.composePoint(pair.queryCentre);
+	for (int axis = 0; axis < 3; ++axis)
+	{
+		result.T_target_query.m_coords[axis] += shift[axis];
+		result.information(axis, axis) = 1 / mrpt::square(options.centreSigma);
+		result.information(3 + axis, 3 + axis) = 1 / mrpt::square(options.rotationSigma);
+	}
+	return result;
+}
+
+std::vector<MatchAlignment> alignPairByPair(
+	const AlignmentProblem& problem, const std::vector<SurfacePair>& pairs,
+	const Eigen::Isometry3d& joint, const ObjectAlignerOptions& options)
+{
+	const auto T_joint = problem.toWorld(joint);
+	const RotationPrior prior{joint.linear(), Eigen::Vector3d::Constant(options.rotationSigma)};
+	std::vector<MatchAlignment> result;
+	for (const auto& pair : pairs) result.push_back(alignCentres(pair, T_joint, options));
+	for (const auto& pair : problem.pairs)
+	{
+		MatchAlignment& alignment = result[pair.index];
+		const CloudPairs alone{&pair, &pair + 1};
+		const auto refined =
+			refine(alone, problem.toLocal(alignment.T_target_query), prior, options);
+		const auto aligned =
+			findCorrespondences(alone, refined.T, options.endDistance, options.maxNormalAngle);
+		const auto fitness =
+			static_cast<double>(aligned.items.size()) / static_cast<double>(alone.queryPoints());
+		if (fitness < options.minFitness || aligned.rmse() > options.maxRmse) continue;
+		alignment.T_target_query = problem.toWorld(refined.T);
+		alignment.information = informationOf(pair, refined.T, options);
+	}
+	return result;
+}
 }  // namespace
 
 void ObjectAlignerOptions::describe(OptionFields& fields)
@@ -84,6 +125,11 @@ void ObjectAlignerOptions::describe(OptionFields& fields)
 		"centre_sigma", centreSigma, 0.001, 100,
 		"how well matched centres agree when the views differ [m]");
 	fields.number("surface_sigma", surfaceSigma, 0.0001, 1, "how well aligned surfaces agree [m]");
+	fields.degrees(
+		"tilt_sigma_deg", tiltSigma, 0.1, 180, "roll and pitch of the correction, gravity known");
+	fields.degrees(
+		"rotation_sigma_deg", rotationSigma, 0.1, 180,
+		"how far one object's rotation is from that of all");
 	fields.number("min_fitness", minFitness, 0, 1, "aligned share of the query's surface points");
 	fields.number("max_rmse", maxRmse, 0.0001, 1, "of the aligned points [m]");
 	fields.number(
@@ -125,20 +171,23 @@ ObjectAlignment ObjectAligner::align(
 		}
 		start = *found;
 	}
-	const auto refined = refineJointly(problem, start, options);
+	constexpr double kAnyYaw = 10;
+	const RotationPrior upright{semantic.linear(), {options.tiltSigma, options.tiltSigma, kAnyYaw}};
+	const auto refined = refine(problem.all(), start, upright, options);
 	const auto aligned =
-		findCorrespondences(problem, refined.T, options.endDistance, options.maxNormalAngle);
+		findCorrespondences(problem.all(), refined.T, options.endDistance, options.maxNormalAngle);
 
 	result.T_target_query = problem.toWorld(refined.T);
 	result.iterations = refined.iterations;
-	result.fitness =
-		static_cast<double>(aligned.items.size()) / static_cast<double>(problem.queryPoints());
+	result.fitness = static_cast<double>(aligned.items.size()) /
+					 static_cast<double>(problem.all().queryPoints());
 	result.rmse = aligned.rmse();
 	result.reason = objection(result, correctionOf(problem, refined.T, semantic), options);
 	result.accepted = result.reason.empty();
-	if (result.accepted)
-		result.reason = text(
-			"%.0f %% of the surface points align to %.3f m", 100 * result.fitness, result.rmse);
+	if (!result.accepted) return result;
+	result.reason =
+		text("%.0f %% of the surface points align to %.3f m", 100 * result.fitness, result.rmse);
+	result.pairs = alignPairByPair(problem, pairs, refined.T, options);
 	return result;
 }
 

@@ -4,6 +4,7 @@
 #include <semloop/loop_closure/SemanticLoopDetector.h>
 #include <semloop/loop_closure/SpectralMatcher.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
 
@@ -38,6 +39,33 @@ std::string text(const char* format, Numbers... numbers)
 	char buffer[160];
 	std::snprintf(buffer, sizeof buffer, format, numbers...);
 	return buffer;
+}
+
+/** Neighbours that were taken for each other fit the centres, not the surfaces of the others. */
+void dropWhatTheSurfacesRefute(
+	const CObjectMap& map, const GeometricVerificationOptions& options, LoopVerdict& verdict)
+{
+	std::vector<std::pair<ObjectId, ObjectId>> matches;
+	std::vector<MatchAlignment> alignments;
+	for (std::size_t i = 0; i < verdict.matches.size(); ++i)
+	{
+		const auto& [query, target] = verdict.matches[i];
+		const auto error = verdict.T_target_query.composePoint(map.object(query).centre()) -
+						   map.object(target).centre();
+		if (std::hypot(error.x, error.y) > options.maxHorizontalError ||
+			std::abs(error.z) > options.maxVerticalError)
+			continue;
+		matches.push_back(verdict.matches[i]);
+		alignments.push_back(verdict.alignments[i]);
+	}
+	verdict.matches = std::move(matches);
+	verdict.alignments = std::move(alignments);
+}
+
+double leastInliers(const SemanticGraph& query, const GeometricVerificationOptions& options)
+{
+	return std::max<double>(
+		options.minInliers, options.minInlierShare * static_cast<double>(query.vertices.size()));
 }
 
 LoopVerdict& reject(LoopVerdict& verdict, std::string reason)
@@ -150,6 +178,13 @@ LoopVerdict SemanticLoopDetector::detect(
 	verdict.alignmentRmse = alignment.rmse;
 	if (!alignment.accepted) return reject(verdict, verdict.reason + "; but " + alignment.reason);
 	verdict.T_target_query = alignment.T_target_query;
+	verdict.alignments = alignment.pairs;
+	dropWhatTheSurfacesRefute(map, options.verification, verdict);
+	const std::size_t left = verdict.matches.size();
+	if (static_cast<double>(left) < leastInliers(queryGraph, options.verification))
+		return reject(
+			verdict,
+			verdict.reason + text("; but under the pose of the surfaces only %zu do", left));
 	verdict.reason += "; " + alignment.reason;
 	return verdict;
 }

@@ -123,10 +123,10 @@ std::optional<Eigen::Index> NearestPoint::find(
 	return indices[0];
 }
 
-Eigen::Index AlignmentProblem::queryPoints() const
+Eigen::Index CloudPairs::queryPoints() const
 {
 	Eigen::Index sum = 0;
-	for (const auto& pair : pairs) sum += pair.query.size();
+	for (const auto& pair : *this) sum += pair.query.size();
 	return sum;
 }
 
@@ -150,18 +150,20 @@ AlignmentProblem makeProblem(
 	AlignmentProblem problem;
 	problem.queryOrigin = meanCentre(pairs, &SurfacePair::queryCentre);
 	problem.targetOrigin = meanCentre(pairs, &SurfacePair::targetCentre);
-	for (const auto& pair : pairs)
+	for (std::size_t i = 0; i < pairs.size(); ++i)
 	{
+		const auto& pair = pairs[i];
 		Cloud query = thinned(toCloud(pair.query, problem.queryOrigin), options.queryVoxel);
 		Cloud target = thinned(toCloud(pair.target, problem.targetOrigin), options.targetVoxel);
 		if (query.size() == 0 || target.size() == 0) continue;
 		NearestPoint nearest(target.points);
 		problem.pairs.push_back(
-			{std::move(query), std::move(target), toEigen(pair.queryCentre) - problem.queryOrigin,
+			{i, std::move(query), std::move(target),
+			 toEigen(pair.queryCentre) - problem.queryOrigin,
 			 toEigen(pair.targetCentre) - problem.targetOrigin, std::move(nearest)});
 	}
 	const Eigen::Index limit = options.maxQueryPoints;
-	const Eigen::Index stride = (problem.queryPoints() + limit - 1) / limit;
+	const Eigen::Index stride = (problem.all().queryPoints() + limit - 1) / limit;
 	if (stride > 1)
 		for (auto& pair : problem.pairs) pair.query = decimated(pair.query, stride);
 	return problem;

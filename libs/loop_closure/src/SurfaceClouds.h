@@ -41,9 +41,22 @@ private:
 /** Two matched objects, thinned, in coordinates near the origin (see AlignmentProblem). */
 struct CloudPair
 {
+	std::size_t index = 0;  //!< among the pairs given
 	Cloud query, target;
 	Eigen::Vector3d queryCentre, targetCentre;
 	NearestPoint nearestTarget;
+};
+
+/** Some of the pairs of a problem, side by side. */
+struct CloudPairs
+{
+	const CloudPair* first = nullptr;
+	const CloudPair* last = nullptr;  //!< one behind
+
+	const CloudPair* begin() const { return first; }
+	const CloudPair* end() const { return last; }
+	double count() const { return static_cast<double>(last - first); }
+	Eigen::Index queryPoints() const;
 };
 
 /** All pairs that have surfaces on both sides. Points are relative to an origin in each world. */
@@ -53,7 +66,7 @@ struct AlignmentProblem
 	Eigen::Vector3d targetOrigin = Eigen::Vector3d::Zero();
 	std::vector<CloudPair> pairs;
 
-	Eigen::Index queryPoints() const;
+	CloudPairs all() const { return {pairs.data(), pairs.data() + pairs.size()}; }
 	Eigen::Isometry3d toLocal(const mrpt::poses::CPose3D& T_target_query) const;
 	mrpt::poses::CPose3D toWorld(const Eigen::Isometry3d& T_local) const;
 };
@@ -77,19 +90,29 @@ struct Correspondences
 };
 
 Correspondences findCorrespondences(
-	const AlignmentProblem& problem, const Eigen::Isometry3d& T, double maxDistance,
-	double maxNormalAngle);
+	const CloudPairs& pairs, const Eigen::Isometry3d& T, double maxDistance, double maxNormalAngle);
 
-struct JointRefinement
+struct Refinement
 {
 	Eigen::Isometry3d T = Eigen::Isometry3d::Identity();
 	int iterations = 0;
 };
 
-/** Point-to-plane ICP over all pairs, see ObjectAligner. */
-JointRefinement refineJointly(
-	const AlignmentProblem& problem, const Eigen::Isometry3d& start,
+/** A rotation that is known beforehand. */
+struct RotationPrior
+{
+	Eigen::Matrix3d expected = Eigen::Matrix3d::Identity();
+	Eigen::Vector3d sigma = Eigen::Vector3d::Ones();  //!< about the target's x, y, z [rad]
+};
+
+/** Point-to-plane ICP over all these pairs, see ObjectAligner. */
+Refinement refine(
+	const CloudPairs& pairs, const Eigen::Isometry3d& start, const RotationPrior& prior,
 	const ObjectAlignerOptions& options);
+
+/** Hessian of the cost of one pair at T, for the motion that MatchAlignment describes. */
+Eigen::Matrix<double, 6, 6> informationOf(
+	const CloudPair& pair, const Eigen::Isometry3d& T, const ObjectAlignerOptions& options);
 
 /** FPFH matched within each pair, then RANSAC over all; empty when no model has 10 inliers. */
 std::optional<Eigen::Isometry3d> alignFeatures(

@@ -56,8 +56,7 @@ double surfaceOverlap(const Object& a, const Object& b)
 	const auto surface = a.volume->surface();
 	const std::size_t step = std::max<std::size_t>(1, surface.size() / kSamples);
 	const CPose3D T_b_a = a.T_world_object - b.T_world_object;
-	const double near =
-		2 * std::max(a.volume->options().voxelSize, b.volume->options().voxelSize);
+	const double near = 2 * std::max(a.volume->options().voxelSize, b.volume->options().voxelSize);
 	std::size_t samples = 0, onSurface = 0;
 	for (std::size_t i = 0; i < surface.size(); i += step, ++samples)
 	{
@@ -78,8 +77,8 @@ double sameness(const Candidate& a, const Candidate& b, const ObjectMapMaintenan
 	const double iou = std::max(
 		intersectionOverUnion(a.box, b.box), intersectionOverUnion(inflated(a), inflated(b)));
 	const bool aIsSmaller = inflated(a).volume() < inflated(b).volume();
-	const double onSurface = aIsSmaller ? surfaceOverlap(*a.object, *b.object)
-										: surfaceOverlap(*b.object, *a.object);
+	const double onSurface =
+		aIsSmaller ? surfaceOverlap(*a.object, *b.object) : surfaceOverlap(*b.object, *a.object);
 	return iou > options.mergeIou || onSurface > options.mergeSurfaceOverlap ? iou + onSurface : 0;
 }
 
@@ -129,11 +128,14 @@ void CObjectMap::mergeObjects(ObjectId kept, ObjectId absorbed)
 	objects_.erase(absorbed);
 }
 
-std::vector<std::pair<ObjectId, ObjectId>> CObjectMap::findDuplicates() const
+std::vector<std::pair<ObjectId, ObjectId>> CObjectMap::findDuplicates(
+	const std::optional<std::set<ObjectId>>& among) const
 {
 	std::vector<Candidate> candidates;
 	for (const auto& entry : objects_)
-		if (const auto box = entry.second.volume->boundingBox())
+		if (among && among->count(entry.first) == 0)
+			continue;
+		else if (const auto box = entry.second.volume->boundingBox())
 			candidates.push_back({&entry.second, worldBox(*box, entry.second.T_world_object)});
 
 	struct Pair

@@ -159,7 +159,8 @@ double removeHidden(ObjectPrediction& prediction, const cv::Mat& zBuffer, float 
 }  // namespace
 
 std::vector<PredictedObject> CObjectMap::predict(
-	const TCamera& camera, const CPose3D& T_world_camera, const cv::Mat& depth) const
+	const TCamera& camera, const CPose3D& T_world_camera, const cv::Mat& depth,
+	const std::optional<std::set<ObjectId>>& among) const
 {
 	if (!depth.empty() && (depth.type() != CV_32FC1 || depth.cols != int(camera.ncols) ||
 						   depth.rows != int(camera.nrows)))
@@ -175,6 +176,7 @@ std::vector<PredictedObject> CObjectMap::predict(
 	std::vector<Candidate> candidates;
 	for (const auto& [id, object] : objects_)
 	{
+		if (among && among->count(id) == 0) continue;
 		const auto box = object.volume->boundingBox();
 		if (!box) continue;
 		const CPose3D T_camera_object = object.T_world_object - T_world_camera;

@@ -1,5 +1,4 @@
 #include <semloop/pose_graph/PoseGraph.h>
-#include <semloop/pose_graph/PoseResidual.h>
 
 #include <Eigen/Cholesky>
 #include <algorithm>
@@ -58,42 +57,6 @@ void PoseGraph::addEdge(const PoseEdge& edge)
 		throw std::invalid_argument(
 			name(edge) + ": the information matrix is not symmetric positive definite");
 	edges_.push_back(edge);
-}
-
-void PoseGraph::mergeObjects(
-	uint64_t kept, uint64_t absorbed, const mrpt::poses::CPose3D& T_kept_absorbed, bool asLoop)
-{
-	const NodeId keptNode = NodeId::object(kept), goneNode = NodeId::object(absorbed);
-	for (const NodeId& id : {keptNode, goneNode})
-		if (!has(id)) throw std::invalid_argument("merging objects: no " + toString(id));
-	if (kept == absorbed)
-		throw std::invalid_argument("merging objects: " + toString(keptNode) + " with itself");
-	if (!isFinite(T_kept_absorbed))
-		throw std::invalid_argument("merging objects: T_kept_absorbed is not finite");
-
-	// The residual of an edge (i, absorbed) becomes Ad(T_kept_absorbed) e: its information follows.
-	const Matrix6 Ad = adjoint(RigidTransform::fromPose(T_kept_absorbed).inverse());
-	for (PoseEdge& edge : edges_)
-	{
-		if (edge.a == goneNode)
-		{
-			edge.a = keptNode;
-			edge.Z_a_b = T_kept_absorbed + edge.Z_a_b;
-		}
-		else if (edge.b == goneNode)
-		{
-			edge.b = keptNode;
-			edge.Z_a_b = edge.Z_a_b + (-T_kept_absorbed);
-			const Matrix6 moved = Ad.transpose() * edge.information * Ad;
-			edge.information = 0.5 * (moved + moved.transpose());
-		}
-		else
-			continue;
-		if (asLoop) edge.kind = PoseEdge::Kind::Loop;
-	}
-	const auto joinsItself = [](const PoseEdge& edge) { return edge.a == edge.b; };
-	edges_.erase(std::remove_if(edges_.begin(), edges_.end(), joinsItself), edges_.end());
-	nodes_.erase(goneNode);
 }
 
 void PoseGraph::removeObject(uint64_t object)

@@ -87,8 +87,7 @@ void SemanticSlam::makeModules(const mrpt::config::CConfigFileBase& config)
 	InstanceTrackerOptions tracking;
 	tracking.loadFromConfigFile(config, "tracking");
 	tracker_ = std::make_unique<InstanceTracker>(tracking, cost);
-	mapper_ = std::make_unique<ObjectMapper>(
-		map_, associator, cost, options_.reassociationGate, timings_);
+	mapper_ = std::make_unique<ObjectMapper>(map_, associator, timings_);
 	loopCloser_ = std::make_unique<LoopCloser>(map_, poseGraph_, detector, timings_);
 }
 

@@ -23,27 +23,11 @@ bool LocalMap::contains(ObjectId id) const
 	return it != lastSeen_.end() && path_ - it->second <= options_.length;
 }
 
-void LocalMap::see(ObjectId id, bool isNew)
-{
-	if (isNew)
-		revisited_.erase(id);
-	else if (!contains(id))
-		revisited_.insert(id);
-	lastSeen_[id] = path_;
-}
-
 std::set<ObjectId> LocalMap::objects() const
 {
 	std::set<ObjectId> result;
 	for (const auto& entry : lastSeen_)
 		if (contains(entry.first)) result.insert(entry.first);
-	return result;
-}
-
-std::set<ObjectId> LocalMap::query() const
-{
-	std::set<ObjectId> result = objects();
-	for (const ObjectId id : revisited_) result.erase(id);
 	return result;
 }
 
@@ -57,12 +41,6 @@ void LocalMap::merge(ObjectId kept, ObjectId absorbed)
 			known == lastSeen_.end() ? it->second : std::max(known->second, it->second);
 	}
 	remove(absorbed);
-}
-
-void LocalMap::remove(ObjectId id)
-{
-	lastSeen_.erase(id);
-	revisited_.erase(id);
 }
 
 }  // namespace semloop

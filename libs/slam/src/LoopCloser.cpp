@@ -1,3 +1,4 @@
+#include <semloop/pose_graph/PoseResidual.h>
 #include <semloop/slam/LoopCloser.h>
 
 #include <map>
@@ -7,6 +8,12 @@ using mrpt::poses::CPose3D;
 
 namespace semloop
 {
+namespace
+{
+// A detector that measures no object by itself says that all move as one, to 5 cm and 3 degrees.
+const Matrix6 kAsOneInformation = 400 * Matrix6::Identity();
+}  // namespace
+
 LoopCloser::LoopCloser(
 	CObjectMap::Ptr map, std::shared_ptr<PoseGraph> poseGraph,
 	std::shared_ptr<const LoopDetector> detector, StageTimings& timings)
@@ -20,47 +27,51 @@ LoopCloser::LoopCloser(
 LoopVerdict LoopCloser::detect(const LocalMap& localMap) const
 {
 	const StageTimings::Scope timing(timings_, "loop_detection");
-	const std::set<ObjectId> local = localMap.query();
 	std::set<ObjectId> query, target;
 	for (const auto& [id, object] : map_->objects())
-	{
-		if (local.count(id))
-			query.insert(id);
-		else if (!localMap.contains(id))
-			target.insert(id);
-	}
+		(localMap.contains(id) ? query : target).insert(id);
 	return detector_->detect(*map_, query, target);
 }
 
 OptimizationReport LoopCloser::close(
 	const LoopVerdict& verdict, LocalMap& localMap, ObjectMapper& mapper)
 {
-	// Sec. III-D: "the camera pose and the object-camera constraint are corrected": what was measured
-	// against the local object is a measurement of its partner from now on.
-	std::map<ObjectId, std::pair<ObjectId, CPose3D>> partners;
-	for (const auto& [query, target] : verdict.matches)
-	{
-		const CPose3D T_world_query = map_->object(query).T_world_object;
-		const CPose3D T_world_target = map_->object(target).T_world_object;
-		const CPose3D T_target_query = (-T_world_target) + (verdict.T_target_query + T_world_query);
-		poseGraph_->mergeObjects(target, query, T_target_query, true);
-		partners[query] = {target, T_target_query};
-	}
+	for (std::size_t i = 0; i < verdict.matches.size(); ++i)
+		addEdge(
+			verdict.matches[i].first, verdict.matches[i].second,
+			i < verdict.alignments.size()
+				? verdict.alignments[i]
+				: MatchAlignment{verdict.T_target_query, kAsOneInformation});
 	const OptimizationReport report = optimize();
-
-	std::map<ObjectId, CPose3D> poses;
-	for (const auto& [query, partner] : partners)
-		poses[query] = map_->object(partner.first).T_world_object + partner.second;
-	map_->moveObjects(poses);
-	for (const auto& [query, partner] : partners)
-	{
-		map_->mergeObjects(partner.first, query);
-		localMap.merge(partner.first, query);
-		mapper.merge(partner.first, query);
-	}
-	localMap.loopClosed();
-	mergeDuplicates(localMap, mapper);
+	for (const auto& [query, target] : verdict.matches) merge(target, query, localMap, mapper);
+	localMap.clear();
+	mergeAllDuplicates(localMap, mapper);
 	return report;
+}
+
+// Sec. III-D: "the camera pose and the object-camera constraint are corrected". The paper rewrites what
+// was measured against the local object; an edge to its partner says the same and how certain it is.
+void LoopCloser::addEdge(ObjectId query, ObjectId target, const MatchAlignment& alignment)
+{
+	const Object& object = map_->object(query);
+	PoseEdge edge;
+	edge.kind = PoseEdge::Kind::Loop;
+	edge.a = NodeId::object(target);
+	edge.b = NodeId::object(query);
+	edge.Z_a_b =
+		(-map_->object(target).T_world_object) + (alignment.T_target_query + object.T_world_object);
+	const CPose3D centre = CPose3D::FromTranslation(object.centre());
+	const Matrix6 Ad = adjoint(RigidTransform::fromPose((-centre) + object.T_world_object));
+	edge.information = Ad.transpose() * alignment.information * Ad;
+	edge.information = 0.5 * (edge.information + edge.information.transpose()).eval();
+	poseGraph_->addEdge(edge);
+}
+
+void LoopCloser::merge(ObjectId kept, ObjectId absorbed, LocalMap& localMap, ObjectMapper& mapper)
+{
+	map_->mergeObjects(kept, absorbed);
+	localMap.merge(kept, absorbed);
+	mapper.merge(kept, absorbed);
 }
 
 OptimizationReport LoopCloser::optimize()
@@ -69,20 +80,37 @@ OptimizationReport LoopCloser::optimize()
 	const OptimizationReport report = poseGraph_->optimize();
 	std::map<ObjectId, CPose3D> poses;
 	for (const auto& [node, pose] : poseGraph_->nodes())
-		if (node.kind == NodeId::Kind::Object) poses[node.index] = pose;
+		if (node.kind == NodeId::Kind::Object && map_->objects().count(node.index))
+			poses[node.index] = pose;
 	map_->moveObjects(poses);
 	return report;
 }
 
 void LoopCloser::mergeDuplicates(LocalMap& localMap, ObjectMapper& mapper)
 {
-	for (auto pairs = map_->findDuplicates(); !pairs.empty(); pairs = map_->findDuplicates())
+	std::set<ObjectId> inside, outside;
+	for (const auto& [id, object] : map_->objects())
+		(localMap.contains(id) ? inside : outside).insert(id);
+	mergeDuplicatesAmong(std::move(inside), localMap, mapper);
+	mergeDuplicatesAmong(std::move(outside), localMap, mapper);
+}
+
+void LoopCloser::mergeAllDuplicates(LocalMap& localMap, ObjectMapper& mapper)
+{
+	std::set<ObjectId> all;
+	for (const auto& entry : map_->objects()) all.insert(entry.first);
+	mergeDuplicatesAmong(std::move(all), localMap, mapper);
+}
+
+void LoopCloser::mergeDuplicatesAmong(
+	std::set<ObjectId> objects, LocalMap& localMap, ObjectMapper& mapper)
+{
+	for (auto pairs = map_->findDuplicates(objects); !pairs.empty();
+		 pairs = map_->findDuplicates(objects))
 		for (const auto& [kept, absorbed] : pairs)
 		{
-			map_->mergeObjects(kept, absorbed);
-			poseGraph_->removeObject(absorbed);
-			localMap.merge(kept, absorbed);
-			mapper.merge(kept, absorbed);
+			objects.erase(absorbed);
+			merge(kept, absorbed, localMap, mapper);
 		}
 }
 

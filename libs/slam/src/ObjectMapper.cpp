@@ -52,13 +52,8 @@ std::vector<AssociationItem> landmarksOf(
 }  // namespace
 
 ObjectMapper::ObjectMapper(
-	CObjectMap::Ptr map, std::shared_ptr<const Associator> associator,
-	std::shared_ptr<const MatchingCost> cost, double reassociationGate, StageTimings& timings)
-	: map_(std::move(map)),
-	  associator_(std::move(associator)),
-	  cost_(std::move(cost)),
-	  reassociationGate_(reassociationGate),
-	  timings_(timings)
+	CObjectMap::Ptr map, std::shared_ptr<const Associator> associator, StageTimings& timings)
+	: map_(std::move(map)), associator_(std::move(associator)), timings_(timings)
 {
 }
 
@@ -74,10 +69,9 @@ std::vector<ObjectObservation> ObjectMapper::update(
 	std::vector<PredictedObject> predicted;
 	{
 		const StageTimings::Scope timing(timings_, "prediction");
-		predicted = map_->predict(frame.camera, T_world_camera, frame.depth);
+		predicted = map_->predict(frame.camera, T_world_camera, frame.depth, localMap.objects());
 	}
-	const auto objects =
-		associate(frame, observation, confirmed, predicted, T_world_camera, localMap);
+	const auto objects = associate(frame, observation, confirmed, predicted, T_world_camera);
 
 	const StageTimings::Scope timing(timings_, "fusion");
 	std::vector<ObjectObservation> seen;
@@ -85,22 +79,19 @@ std::vector<ObjectObservation> ObjectMapper::update(
 	for (std::size_t k = 0; k < confirmed.size(); ++k)
 	{
 		const Instance& instance = observation.instances[confirmed[k].instance];
-		const auto observed = fuse(frame, instance, confirmed[k], objects[k], T_world_camera);
+		const auto observed =
+			fuse(frame, instance, confirmed[k], objects[k], T_world_camera, localMap);
 		// Two tracks of one object, as when a mask was split: one measurement is enough.
 		if (observed && associated.insert(observed->object).second) seen.push_back(*observed);
 	}
-	// Where the drift has grown since an object was seen, looking through its place proves nothing.
-	std::vector<PredictedObject> expected;
-	for (auto& p : predicted)
-		if (localMap.isOfThisTime(p.id)) expected.push_back(std::move(p));
-	map_->updateExistence(expected, frame, associated);
+	map_->updateExistence(predicted, frame, associated);
 	return seen;
 }
 
 std::vector<std::optional<ObjectId>> ObjectMapper::associate(
 	const RgbdFrame& frame, const CObservationInstances& observation,
 	const std::vector<TrackedInstance>& confirmed, const std::vector<PredictedObject>& predicted,
-	const mrpt::poses::CPose3D& T_world_camera, const LocalMap& localMap) const
+	const mrpt::poses::CPose3D& T_world_camera) const
 {
 	const StageTimings::Scope timing(timings_, "association");
 	const Detections detections = detectionsOf(frame, observation, confirmed);
@@ -108,18 +99,14 @@ std::vector<std::optional<ObjectId>> ObjectMapper::associate(
 
 	std::vector<std::optional<ObjectId>> result(confirmed.size());
 	for (const auto& [j, k] : associator_->associate(landmarks, detections.items).matches)
-	{
-		const ObjectId id = predicted[j].id;
-		if (localMap.contains(id) ||
-			cost_->cost(landmarks[j], detections.items[k]) <= reassociationGate_)
-			result[k] = id;
-	}
+		result[k] = predicted[j].id;
 	return result;
 }
 
 std::optional<ObjectObservation> ObjectMapper::fuse(
 	const RgbdFrame& frame, const Instance& instance, const TrackedInstance& tracked,
-	std::optional<ObjectId> object, const mrpt::poses::CPose3D& T_world_camera)
+	std::optional<ObjectId> object, const mrpt::poses::CPose3D& T_world_camera,
+	const LocalMap& localMap)
 {
 	ObjectObservation result;
 	result.instance = tracked.instance;
@@ -132,7 +119,8 @@ std::optional<ObjectObservation> ObjectMapper::fuse(
 	else
 	{
 		// A track whose object was not recognised in this frame is no second object.
-		if (objectOfTrack_.count(tracked.track)) return std::nullopt;
+		const auto known = objectOfTrack_.find(tracked.track);
+		if (known != objectOfTrack_.end() && localMap.contains(known->second)) return std::nullopt;
 		const auto id = map_->addObject(frame, instance, T_world_camera);
 		if (!id) return std::nullopt;
 		result.object = *id;

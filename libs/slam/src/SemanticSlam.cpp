@@ -140,9 +140,7 @@ void SemanticSlam::addObservations(const std::vector<ObjectObservation>& seen)
 		const NodeId node = NodeId::object(observation.object);
 		const CPose3D& T_world_object = map_->object(observation.object).T_world_object;
 		if (!poseGraph_->has(node)) poseGraph_->setNode(node, T_world_object);
-		localMap_.see(observation.object, observation.isNew);
-		// Against an object of another time this would measure the drift as zero.
-		if (localMap_.isRevisited(observation.object)) continue;
+		localMap_.see(observation.object);
 
 		PoseEdge edge;  // Eq. (7), e_oc
 		edge.kind = PoseEdge::Kind::Observation;
@@ -216,6 +214,7 @@ void SemanticSlam::finish()
 	loopCloser_->optimize();
 	followOptimizedCamera();
 	maintainMap();
+	loopCloser_->mergeAllDuplicates(localMap_, *mapper_);
 }
 
 Trajectory SemanticSlam::trajectory() const

@@ -34,9 +34,6 @@ void SlamOptions::describe(OptionFields& f)
 		"min_observations", minObservations, 1, 100000,
 		"objects seen in fewer frames are left out of objects.json and objects/");
 	f.number(
-		"reassociation_gate", reassociationGate, 0, 1,
-		"largest matching cost with an object that is not in the local map");
-	f.number(
 		"observation_sigma", observationSigma, 1e-4, 10,
 		"of an object seen from a camera, e_oc [m]");
 	f.degrees(

@@ -13,8 +13,8 @@ namespace semloop
 {
 struct GeometricVerificationOptions : Options
 {
-	double maxHorizontalError = 0.45;  //!< of an inlier's centre [m]
-	double maxVerticalError = 0.35;    //!< of an inlier's centre [m]
+	double maxHorizontalError = 0.3;  //!< of an inlier's centre [m]
+	double maxVerticalError = 0.25;   //!< of an inlier's centre [m]
 	double minSimilarity = 0.3;  //!< of two objects that both have embeddings, to be re-matched
 	int minInliers = 4;
 	double minInlierShare = 0.5;  //!< inliers / query vertices

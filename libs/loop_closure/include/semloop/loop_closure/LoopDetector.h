@@ -5,12 +5,22 @@
 #include <mrpt/rtti/CObject.h>
 #include <semloop/loop_closure/GraphMatcher.h>
 
+#include <Eigen/Core>
 #include <string>
 #include <utility>
 #include <vector>
 
 namespace semloop
 {
+/** Where one matched object of the query belongs, as measured on that object alone. */
+struct MatchAlignment
+{
+	mrpt::poses::CPose3D T_target_query;  //!< between the worlds, as LoopVerdict's
+	/** Inverse covariance of a small motion d = (translation [m], rotation vector [rad]) of the query
+	 *  object about its centre: T_target_query C exp(d), C the query's centre with its world's axes. */
+	Eigen::Matrix<double, 6, 6> information = Eigen::Matrix<double, 6, 6>::Identity();
+};
+
 /** Outcome of matching a local map against the global map. */
 struct LoopVerdict
 {
@@ -25,14 +35,17 @@ struct LoopVerdict
 	std::string reason;  //!< one line for a person, with the numbers behind it
 	std::vector<std::pair<ObjectId, ObjectId>> matches;  //!< the consistent ones, query id first
 	mrpt::poses::CPose3D T_target_query;                 //!< meaningful when accepted
-	std::size_t queryObjects = 0;                        //!< objects in the local map
-	std::size_t candidateMatches = 0;                    //!< matches before verification
-	double matchedEdgeShare = 0.0;  //!< matched edges / edges of the query graph, [0, 1]
-	double matchingScore = 0.0;     //!< of the graph matcher
-	double centreRmse = 0.0;        //!< of the matched centres under T_target_query [m]
-	double runnerUp = 0.0;          //!< inliers of the best rival / ours, in [0, 1]
-	double alignmentFitness = 0.0;  //!< share of aligned surface points, [0, 1]
-	double alignmentRmse = 0.0;     //!< of the aligned surfaces [m]
+	/** In the order of matches: the local map has its own drift, so each object has its own
+	 *  correction. Empty when the detector measures none; T_target_query then holds for all. */
+	std::vector<MatchAlignment> alignments;
+	std::size_t queryObjects = 0;      //!< objects in the local map
+	std::size_t candidateMatches = 0;  //!< matches before verification
+	double matchedEdgeShare = 0.0;     //!< matched edges / edges of the query graph, [0, 1]
+	double matchingScore = 0.0;        //!< of the graph matcher
+	double centreRmse = 0.0;           //!< of the matched centres under T_target_query [m]
+	double runnerUp = 0.0;             //!< inliers of the best rival / ours, in [0, 1]
+	double alignmentFitness = 0.0;     //!< share of aligned surface points, [0, 1]
+	double alignmentRmse = 0.0;        //!< of the aligned surfaces [m]
 };
 
 /** Recognises the local map (query) in the global map (target); both are objects of one map. */

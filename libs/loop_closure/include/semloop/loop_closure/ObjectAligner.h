@@ -4,6 +4,7 @@
 #include <mrpt/math/TPoint3D.h>
 #include <mrpt/poses/CPose3D.h>
 #include <semloop/config/Options.h>
+#include <semloop/loop_closure/LoopDetector.h>
 #include <semloop/object_map/CObjectMap.h>
 
 #include <string>
@@ -24,6 +25,8 @@ struct ObjectAlignerOptions : Options
 	int maxIterations = 40;
 	double centreSigma = 0.3;      //!< how well matched centres agree when their views differ [m]
 	double surfaceSigma = 0.01;    //!< how well aligned surfaces agree [m]
+	double tiltSigma = 0.05;       //!< of the correction's roll and pitch: gravity is known [rad]
+	double rotationSigma = 0.2;    //!< how far an object's rotation is from the joint one [rad]
 	double minFitness = 0.3;       //!< aligned share of the query's points
 	double maxRmse = 0.025;        //!< of the aligned points, along the target's normals [m]
 	double maxCorrection = 0.7;    //!< from the semantic pose, at the query's centre [m]
@@ -51,6 +54,7 @@ struct ObjectAlignment
 	double fitness = 0.0;  //!< query points with an aligned partner / query points, [0, 1]
 	double rmse = 0.0;     //!< of those, along the target's normals [m]
 	int iterations = 0;    //!< of the refinement
+	std::vector<MatchAlignment> pairs;  //!< each pair on its own, in the order given; see align()
 };
 
 /** Aligns the surfaces of all matched objects at once (Sec. III-C, Object Alignment).
@@ -62,9 +66,10 @@ struct ObjectAlignment
  *  Both are refined by point-to-plane ICP (Y. Chen and G. Medioni, 1992) with correspondences within
  *  matched objects only, at a distance that shrinks from startDistance to endDistance and with
  *  Tukey's weights. The cost is
- *      mean of (n . (T q - t))^2 / surfaceSigma^2  +  mean of |T c_q - c_t|^2 / centreSigma^2,
+ *      mean of (n . (T q - t))^2 / surfaceSigma^2  +  mean of |T c_q - c_t|^2 / centreSigma^2
+ *      +  tilt^2 / tiltSigma^2,
  *  whose second part, over the matched centres, decides what the surfaces leave open, such as sliding
- *  along flat ones. The yaw of a single round object stays open.
+ *  along flat ones, and whose third keeps up up. The yaw of a single round object stays open.
  *
  *  Not accepted: no surface on one side, no RANSAC model, too little overlap, too large a residual,
  *  or a result too far from the semantic pose. The same input gives the same output. */
@@ -73,7 +78,12 @@ class ObjectAligner
 public:
 	void configure(const mrpt::config::CConfigFileBase& config, const std::string& section);
 
-	/** T_semantic is the T_target_query of the matched centres. */
+	/** T_semantic is the T_target_query of the matched centres.
+	 *
+	 *  An accepted result is refined pair by pair, for between two objects of the query there is drift
+	 *  too. The cost is the joint one of that pair alone, with |log R R_joint^T|^2 / rotationSigma^2 for
+	 *  what its surface leaves open, as a flat object does its yaw; a pair whose surfaces do not align
+	 *  has its centres only. The information is the cost's Hessian. */
 	ObjectAlignment align(
 		const std::vector<SurfacePair>& pairs, const mrpt::poses::CPose3D& T_semantic) const;
 

@@ -12,7 +12,7 @@ namespace semloop
 struct SemanticLoopDetectorOptions : Options
 {
 	std::string matcher = "semloop::SpectralMatcher";  //!< a registered GraphMatcher
-	int minObservations = 1;    //!< objects that were seen less often stay out of both graphs
+	int minObservations = 5;    //!< objects that were seen less often stay out of both graphs
 	double minEdgeShare = 0.5;  //!< Sec. IV-B
 	double edgeLengthTolerance = 0.5;  //!< of a matched edge [m]
 	double maxDrift = 0.0;             //!< larger corrections are rejected; 0: no limit [m]

@@ -16,31 +16,31 @@ namespace semloop
 /** How objects are built. */
 struct ObjectMapInsertionOptions : Options
 {
-	double voxelsPerSide = 64;	  //!< voxel size = size of the object when first seen / this ...
+	double voxelsPerSide = 64;    //!< voxel size = size of the object when first seen / this ...
 	double minVoxelSize = 0.005;  //!< ... clipped to this range [m]
-	double maxVoxelSize = 0.03;	  //!< [m]
+	double maxVoxelSize = 0.03;   //!< [m]
 	double truncationVoxels = 4;  //!< truncation = this * voxel size
-	double maxDepth = 4.0;		  //!< further measurements are not fused [m]
-	int minPixels = 64;			  //!< a mask needs this many pixels of valid depth on the object
-	int maxEmbeddings = 10;		  //!< |E_j| at most
+	double maxDepth = 4.0;        //!< further measurements are not fused [m]
+	int minPixels = 64;           //!< a mask needs this many pixels of valid depth on the object
+	int maxEmbeddings = 10;       //!< |E_j| at most
 	double gate =
 		0.8;  //!< largest matching cost when the map itself associates (insertObservation)
 
- protected:
+protected:
 	void describe(OptionFields& fields) override;
 };
 
 /** When objects are dropped or united. */
 struct ObjectMapMaintenanceOptions : Options
 {
-	double minExistence = 0.1;	//!< below: the object is removed
+	double minExistence = 0.1;  //!< below: the object is removed
 	double mergeIou =
 		0.3;  //!< boxes of two objects of compatible label that overlap more: one object
 	double mergeSurfaceOverlap = 0.4;  //!< same, for the share of the smaller surface on the larger
 	/** Labels are compatible when the best ones agree, or sum_l min(l_i, l_j) is more than this. */
 	double mergeLabelOverlap = 0.3;
 
- protected:
+protected:
 	void describe(OptionFields& fields) override;
 };
 
@@ -64,7 +64,7 @@ class CObjectMap : public mrpt::maps::CMetricMap
 {
 	DEFINE_SERIALIZABLE(CObjectMap, semloop)
 
- public:
+public:
 	CObjectMap() = default;
 
 	ObjectMapInsertionOptions insertionOptions;
@@ -95,10 +95,12 @@ class CObjectMap : public mrpt::maps::CMetricMap
 
 	/** Predicted masks m_j of the objects in view, nearest first. An object hides what is behind it,
 	 *  and so does what the depth image (same camera, may be empty) measures in front of it: by more
-	 *  than max(truncation, 3 cm). Objects with nothing left to see are not in the list. */
+	 *  than max(truncation, 3 cm). Objects with nothing left to see are not in the list; with `among`,
+	 *  the map holds no others than these. */
 	std::vector<PredictedObject> predict(
 		const mrpt::img::TCamera& camera, const mrpt::poses::CPose3D& T_world_camera,
-		const cv::Mat& depth = {}) const;
+		const cv::Mat& depth = {},
+		const std::optional<std::set<ObjectId>>& among = std::nullopt) const;
 
 	/** Lowers the existence of objects that the depth image looks through, and raises that of the
 	 *  associated ones; log-odds, as in occupancy grids (H. Moravec and A. Elfes, ICRA 1985). An object
@@ -120,8 +122,10 @@ class CObjectMap : public mrpt::maps::CMetricMap
 	 *  (axis-aligned in the world, a voxel wider on each side so that thin things overlap too) have an
 	 *  IoU above mergeIou, or more than mergeSurfaceOverlap of the smaller one's surface lies within
 	 *  two voxels of the larger one's. Boxes alone would unite neighbours that stand askew. Each object
-	 *  comes once at most; merging changes what overlaps: ask again until there is none. */
-	std::vector<std::pair<ObjectId, ObjectId>> findDuplicates() const;
+	 *  comes once at most; merging changes what overlaps: ask again until there is none. With `among`,
+	 *  only pairs of these. */
+	std::vector<std::pair<ObjectId, ObjectId>> findDuplicates(
+		const std::optional<std::set<ObjectId>>& among = std::nullopt) const;
 	/** @} */
 
 	/** @name mrpt::maps::CMetricMap
@@ -138,7 +142,7 @@ class CObjectMap : public mrpt::maps::CMetricMap
 	std::string asString() const override;
 	/** @} */
 
- protected:
+protected:
 	/** Keeps options and labels. */
 	void internal_clear() override;
 	bool internal_insertObservation(
@@ -150,7 +154,7 @@ class CObjectMap : public mrpt::maps::CMetricMap
 	bool internal_canComputeObservationLikelihood(
 		const mrpt::obs::CObservation& observation) const override;
 
- private:
+private:
 	TsdfVolume& writableVolume(Object& object);
 	void requireUsable(const RgbdFrame& frame, const Instance& instance) const;
 

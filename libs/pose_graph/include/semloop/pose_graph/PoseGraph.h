@@ -83,13 +83,6 @@ public:
 	/** Throws std::invalid_argument on an unknown node, an edge from a node to itself, a pose that is
 	 *  not finite, or an information matrix that is not symmetric positive definite. */
 	void addEdge(const PoseEdge& edge);
-	/** Object `absorbed` turns out to be `kept`, at T_kept_absorbed: every edge (absorbed, i) becomes
-	 *  (kept, i) with Z_kept_i = T_kept_absorbed Z_absorbed_i, and counts as a loop edge when asLoop
-	 *  (Sec. III-D, "corrected using the estimated drift error"); the node goes. An edge between the
-	 *  two goes as well; the pose of `kept` stays. Throws std::invalid_argument when either object is
-	 *  unknown, both are the same, or the transform is not finite. */
-	void mergeObjects(
-		uint64_t kept, uint64_t absorbed, const mrpt::poses::CPose3D& T_kept_absorbed, bool asLoop);
 	/** Removes an object's node and edges; throws std::invalid_argument on an unknown object. */
 	void removeObject(uint64_t object);
 

@@ -19,11 +19,11 @@ protected:
 };
 
 /** The objects seen over the last few metres of path, i.e. as far as odometry can be trusted
- *  (Sec. III-B): the query of the loop detection.
+ *  (Sec. III-B): what detections are associated with, and the query of the loop detection.
  *
- *  An object that comes back into view after it had left the local map is *revisited*: it was built
- *  at another time, under another drift, so it neither constrains the current cameras nor describes
- *  the place as seen now, until a loop closure has tied the two times together. */
+ *  What has left the local map was built under another drift. When it comes into view again it is
+ *  mapped anew, and the two become one by a loop closure, which measures the drift between them, or,
+ *  when there was none, by standing in one place (CObjectMap::findDuplicates). */
 class LocalMap
 {
 public:
@@ -31,22 +31,17 @@ public:
 
 	/** The camera moved. */
 	void advance(const mrpt::poses::CPose3D& T_previous_camera);
-	/** The object was seen (isNew: created) from the current camera. */
-	void see(ObjectId id, bool isNew);
+	/** The object was seen from the current camera, or is known to be near it. */
+	void see(ObjectId id) { lastSeen_[id] = path_; }
 
 	bool contains(ObjectId id) const;
-	bool isRevisited(ObjectId id) const { return revisited_.count(id) > 0; }
-	/** In the local map and not revisited: odometry can be trusted between then and now. */
-	bool isOfThisTime(ObjectId id) const { return contains(id) && !isRevisited(id); }
-	/** Everything seen over the last metres. */
 	std::set<ObjectId> objects() const;
-	/** The same without revisited objects. */
-	std::set<ObjectId> query() const;
 
-	/** After a loop closure: absorbed is kept from now on, and what is in view agrees with the map. */
+	/** absorbed is a part of kept from now on. */
 	void merge(ObjectId kept, ObjectId absorbed);
-	void loopClosed() { revisited_.clear(); }
-	void remove(ObjectId id);
+	void remove(ObjectId id) { lastSeen_.erase(id); }
+	/** The next local map begins. */
+	void clear() { lastSeen_.clear(); }
 
 	double path() const { return path_; }  //!< travelled so far [m]
 
@@ -54,7 +49,6 @@ private:
 	LocalMapOptions options_;
 	double path_ = 0.0;
 	std::map<ObjectId, double> lastSeen_;  //!< object -> path when last seen [m]
-	std::set<ObjectId> revisited_;
 };
 
 }  // namespace semloop

@@ -21,19 +21,28 @@ public:
 		CObjectMap::Ptr map, std::shared_ptr<PoseGraph> poseGraph,
 		std::shared_ptr<const LoopDetector> detector, StageTimings& timings);
 
-	/** Query: what the local map has built itself; target: everything that is not in the local map. */
+	/** Query: the local map; target: everything else. */
 	LoopVerdict detect(const LocalMap& localMap) const;
-	/** Carries out an accepted verdict: each matched object of the local map becomes one with its
-	 *  partner, all poses are optimised, and the objects moved and merged. */
+	/** Carries out an accepted verdict: an edge joins each matched object of the local map to its
+	 *  partner, all poses are optimised, and the objects moved and merged; the pose graph keeps both
+	 *  nodes of a merged object. A new local map begins, so that the next loop closure measures how
+	 *  the drift goes on. */
 	OptimizationReport close(const LoopVerdict& verdict, LocalMap& localMap, ObjectMapper& mapper);
 
 	/** Optimises, and moves the objects to where the graph has them. */
 	OptimizationReport optimize();
-	/** Makes one of objects that by now stand in the same place. Nothing was measured between the two,
-	 *  so the pose graph only forgets the absorbed one. */
+	/** Makes one of objects that stand in the same place, both in the local map or both outside: of one
+	 *  inside and one outside, a loop closure may still tell the drift. Nothing was measured between
+	 *  the two, so the pose graph stays as it is. */
 	void mergeDuplicates(LocalMap& localMap, ObjectMapper& mapper);
+	/** The same for all objects: the drift is known, or nothing is left to measure it. */
+	void mergeAllDuplicates(LocalMap& localMap, ObjectMapper& mapper);
 
 private:
+	void addEdge(ObjectId query, ObjectId target, const MatchAlignment& alignment);
+	void merge(ObjectId kept, ObjectId absorbed, LocalMap& localMap, ObjectMapper& mapper);
+	void mergeDuplicatesAmong(std::set<ObjectId> objects, LocalMap& localMap, ObjectMapper& mapper);
+
 	CObjectMap::Ptr map_;
 	std::shared_ptr<PoseGraph> poseGraph_;
 	std::shared_ptr<const LoopDetector> detector_;

@@ -30,12 +30,10 @@ class ObjectMapper
 {
 public:
 	ObjectMapper(
-		CObjectMap::Ptr map, std::shared_ptr<const Associator> associator,
-		std::shared_ptr<const MatchingCost> cost, double reassociationGate, StageTimings& timings);
+		CObjectMap::Ptr map, std::shared_ptr<const Associator> associator, StageTimings& timings);
 
-	/** T_world_camera of the optical frame. The local map tells which objects are of this time: with
-	 *  others the drift since then may be large, so an association must be better than
-	 *  reassociationGate. */
+	/** T_world_camera of the optical frame. Only objects of the local map are landmarks: the drift
+	 *  since others were seen may have put them where another one stands now. */
 	std::vector<ObjectObservation> update(
 		const RgbdFrame& frame, const CObservationInstances& observation,
 		const std::vector<TrackedInstance>& tracked, const mrpt::poses::CPose3D& T_world_camera,
@@ -50,17 +48,16 @@ private:
 	std::vector<std::optional<ObjectId>> associate(
 		const RgbdFrame& frame, const CObservationInstances& observation,
 		const std::vector<TrackedInstance>& confirmed,
-		const std::vector<PredictedObject>& predicted, const mrpt::poses::CPose3D& T_world_camera,
-		const LocalMap& localMap) const;
+		const std::vector<PredictedObject>& predicted,
+		const mrpt::poses::CPose3D& T_world_camera) const;
 	/** Fuses the detection into its object, or makes one; empty when neither was possible. */
 	std::optional<ObjectObservation> fuse(
 		const RgbdFrame& frame, const Instance& instance, const TrackedInstance& tracked,
-		std::optional<ObjectId> object, const mrpt::poses::CPose3D& T_world_camera);
+		std::optional<ObjectId> object, const mrpt::poses::CPose3D& T_world_camera,
+		const LocalMap& localMap);
 
 	CObjectMap::Ptr map_;
 	std::shared_ptr<const Associator> associator_;
-	std::shared_ptr<const MatchingCost> cost_;
-	double reassociationGate_ = 0.0;
 	StageTimings& timings_;
 	std::map<uint64_t, ObjectId> objectOfTrack_;
 };

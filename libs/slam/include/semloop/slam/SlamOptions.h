@@ -31,14 +31,12 @@ struct SlamOptions : Options
 	double confusionCorrect = 0.9;  //!< p(l | l) without a file
 	bool level = true;              //!< turn the world so that gravity points down -z
 	int framesAhead = 4;  //!< frames read and segmented ahead in their own thread; 0: no thread
-	int loopEveryFrames = 10;      //!< segmented frames between two loop detections
-	int maintainEveryFrames = 30;  //!< segmented frames between two clean-ups of the map
-	int minObservations = 5;  //!< objects seen in fewer frames are left out of the results
-	double reassociationGate =
-		0.45;                        //!< largest matching cost with an object outside the local map
-	double observationSigma = 0.05;  //!< of e_oc [m]
-	double observationSigmaAngle = 0.05;  //!< of e_oc [rad]
-	double keyPoseDistance = 0.3;         //!< path between two key poses of map.simplemap [m]
+	int loopEveryFrames = 10;       //!< segmented frames between two loop detections
+	int maintainEveryFrames = 30;   //!< segmented frames between two clean-ups of the map
+	int minObservations = 5;        //!< objects seen in fewer frames are left out of the results
+	double observationSigma = 0.2;  //!< of e_oc [m]
+	double observationSigmaAngle = 0.2;  //!< of e_oc [rad]
+	double keyPoseDistance = 0.3;        //!< path between two key poses of map.simplemap [m]
 
 protected:
 	void describe(OptionFields& fields) override;
