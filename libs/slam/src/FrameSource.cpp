@@ -11,6 +11,14 @@ using mrpt::obs::CObservation3DRangeScan;
 
 namespace semloop
 {
+namespace
+{
+std::string text(cv::Size size)
+{
+	return std::to_string(size.width) + "x" + std::to_string(size.height);
+}
+}  // namespace
+
 /** Bounded hand-over between the reading thread and the consumer. */
 class FrameSource::Queue
 {
@@ -178,6 +186,16 @@ bool FrameSource::prepare(const CObservation3DRangeScan::Ptr& scan, SlamFrame& f
 	return true;
 }
 
+void FrameSource::requireSize(const CObservationInstances& recorded, const RgbdFrame& raw) const
+{
+	const cv::Size wanted = raw.color.size(), size = recorded.imageSize();
+	if (size == wanted) return;
+	throw InputError(
+		reader_.path() + ": instances at " + mrpt::system::dateTimeToString(recorded.timestamp) +
+		" are of an image of " + text(size) + ", but the frame's is " + text(wanted) +
+		"; make them from this rawlog with rawlog-segment");
+}
+
 void FrameSource::segment(const RgbdFrame& raw, SlamFrame& frame)
 {
 	const StageTimings::Scope timing(timings_, "segmentation");
@@ -187,6 +205,7 @@ void FrameSource::segment(const RgbdFrame& raw, SlamFrame& frame)
 	if (recorded && recorded->timestamp == raw.time)
 	{
 		lookAhead_.reset();
+		requireSize(*recorded, raw);
 		frame.instances = recorded;
 	}
 	else
