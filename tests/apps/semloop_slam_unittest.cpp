@@ -1,11 +1,4 @@
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-#include <sys/wait.h>
-
-#include <cstdlib>
-#include <nlohmann/json.hpp>
-
-#include "../slam/SyntheticRun.h"
+#include "SemloopSlamFixture.h"
 
 using namespace semloop;
 using namespace semloop::synthetic;
@@ -13,39 +6,8 @@ using testing::HasSubstr;
 
 namespace
 {
-class SemloopSlam : public testing::Test
+class SemloopSlam : public SemloopSlamFixture
 {
-protected:
-	/** The exit code; what was printed is in files out and err. */
-	int run(const std::string& arguments) const
-	{
-		const std::string command = "'" SEMLOOP_BINARY_DIR "/bin/semloop-slam' " + arguments +
-									" > '" + folder_.file("out") + "' 2> '" + folder_.file("err") +
-									"'";
-		const int status = std::system(command.c_str());
-		return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
-	}
-	std::string messages() const { return readBytes(folder_.file("err")); }
-	nlohmann::json summary() const
-	{
-		return nlohmann::json::parse(readBytes(folder_.file("result/summary.json")));
-	}
-
-	RecordedRun recordShortRun() const
-	{
-		RunOptions options;
-		options.degrees = 40;
-		return recordRun(folder_, options);
-	}
-	std::string arguments(const RecordedRun& recorded) const
-	{
-		return "-c '" SEMLOOP_SOURCE_DIR "/config_ini/recorded_odometry.ini' -i '" +
-			   recorded.rawlog + "' -o '" + folder_.file("result") +
-			   "' --set 'odometry.file=" + recorded.truth + "' --instances '" + recorded.rawlog +
-			   "'";
-	}
-
-	const TemporaryFolder folder_;
 };
 }  // namespace
 
