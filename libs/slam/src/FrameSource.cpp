@@ -39,7 +39,7 @@ public:
 	{
 		const std::lock_guard lock(mutex_);
 		finished_ = true;
-		error_ = error;
+		error_ = std::move(error);
 		changed_.notify_all();
 	}
 	void stop()
@@ -96,7 +96,8 @@ FrameSource::FrameSource(
 			{
 				error = std::current_exception();
 			}
-			queue_->finish(error);
+			// Moved: the last to hold the exception must be the consumer, who may still read it.
+			queue_->finish(std::move(error));
 		});
 }
 
