@@ -46,9 +46,7 @@ public:
 	/** Gives the program the content; whoever reads the file again finds a plain one. */
 	void release()
 	{
-		const std::string plain = path_ + ".plain";
-		std::ofstream(plain, std::ios::binary) << content_;
-		std::rename(plain.c_str(), path_.c_str());
+		makePlain();
 		for (std::size_t done = 0; done < content_.size();)
 		{
 			const auto written = write(writer_, &content_[done], content_.size() - done);
@@ -57,6 +55,13 @@ public:
 		}
 		close(writer_);
 		writer_ = -1;
+	}
+	/** From now on the file is a plain one for who opens it. */
+	void makePlain() const
+	{
+		const std::string plain = path_ + ".plain";
+		std::ofstream(plain, std::ios::binary) << content_;
+		std::rename(plain.c_str(), path_.c_str());
 	}
 
 private:
