@@ -186,6 +186,10 @@ int runSlam(const SlamRunArguments& arguments)
 		std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
 	writeRunResults(arguments.output, slam, info, timings);
 	printSummary(arguments, slam, info);
+	if (failure.empty() && slam.frameCount() > 0 && slam.segmentedFrameCount() == 0)
+		std::cerr
+			<< "semloop-slam: warning: no frame has instances, so there are no objects and no "
+			   "loops; were they made from this rawlog?\n";
 	if (info.endedBy == kCtrlC)
 		std::cerr << "semloop-slam: stopped by Ctrl-C; results so far are in " << arguments.output
 				  << "\n";

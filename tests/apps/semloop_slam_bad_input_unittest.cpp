@@ -65,6 +65,13 @@ TEST_F(SemloopSlamBadInput, AnUnknownKeyInTheConfigurationIsNamedWithTheKnownOne
 	EXPECT_THAT(messages(), AllOf(HasSubstr("my.ini: [odometry] drfit"), HasSubstr("unknown key")));
 }
 
+TEST_F(SemloopSlamBadInput, AKeyAboveTheFirstSectionIsNamed)
+{
+	EXPECT_EQ(run(withConfig("drift = 1\n")), 2);
+	EXPECT_EQ(messageLines(), 1u) << messages();
+	EXPECT_THAT(messages(), HasSubstr("my.ini: drift: stands above the first section"));
+}
+
 TEST_F(SemloopSlamBadInput, AnUnregisteredModuleIsNamedWithTheRegisteredOnes)
 {
 	EXPECT_EQ(
@@ -91,6 +98,13 @@ TEST_F(SemloopSlamBadInput, ANetworkOfAnotherLayoutIsNamedBeforeTheWorkBegins)
 		messages(), AllOf(
 						HasSubstr(network + ": not a segmentation network"),
 						HasSubstr("doc/segmentation-networks.md")));
+}
+
+TEST_F(SemloopSlamBadInput, AConfigurationThatLacksTheNetworkIsNamedWithTheKey)
+{
+	EXPECT_EQ(run(withConfig("[modules]\nsegmenter = semloop::DnnSegmenter\n")), 2);
+	EXPECT_EQ(messageLines(), 1u) << messages();
+	EXPECT_THAT(messages(), HasSubstr("my.ini: [segmentation] model: missing"));
 }
 
 TEST_F(SemloopSlamBadInput, ANetworkOfAnotherImageSizeIsNamedWithBothSizes)
@@ -141,6 +155,24 @@ TEST_F(SemloopSlamBadInput, InstancesInTheRawlogOfAnotherImageSizeEndTheRunToo)
 	EXPECT_THAT(messages(), AllOf(HasSubstr("merged.rawlog"), HasSubstr("rawlog-segment")));
 }
 
+TEST_F(SemloopSlamBadInput, InstancesOfAnotherRecordingAreWarnedAbout)
+{
+	const RecordedRun scans = changed(recorded_, [](int, CObservation3DRangeScan&) {});
+	ASSERT_EQ(run(arguments(scans, scans.rawlog)), 0) << messages();
+	EXPECT_EQ(summary()["frames_segmented"], 0);
+	EXPECT_EQ(messageLines(), 1u) << messages();
+	EXPECT_THAT(messages(), HasSubstr("warning: no frame has instances"));
+}
+
+TEST_F(SemloopSlamBadInput, ARawlogThatIsNoneIsToldSo)
+{
+	RecordedRun other = recorded_;
+	other.rawlog = folder_.write("other.rawlog", "Dear diary, today we went mapping.");
+	EXPECT_EQ(run(arguments(other, recorded_.rawlog)), 1);
+	EXPECT_THAT(messages(), AllOf(HasSubstr("other.rawlog"), HasSubstr("not a rawlog")));
+	EXPECT_EQ(messageLines(), 1u) << messages();
+}
+
 TEST_F(SemloopSlamBadInput, ACutSidecarKeepsTheResultsSoFarAndFails)
 {
 	const std::string bytes = readBytes(recorded_.rawlog);
@@ -160,7 +192,7 @@ TEST_F(SemloopSlamBadInput, AFrameWithoutValidDepthIsSkippedAndCounted)
 		{
 			if (index == 4) scan.rangeImage.fill(0);
 		});
-	ASSERT_EQ(run(arguments(holed)), 0) << messages();
+	ASSERT_EQ(run(arguments(holed, recorded_.rawlog)), 0) << messages();
 	EXPECT_EQ(summary()["frames"], recorded_.frames - 1);
 	EXPECT_EQ(summary()["frames_skipped"], 1);
 	EXPECT_EQ(messageLines(), 1u) << messages();
@@ -171,7 +203,7 @@ TEST_F(SemloopSlamBadInput, ARecordingWithoutAnyValidDepthFailsAndSaysSo)
 {
 	const RecordedRun blind =
 		changed(recorded_, [](int, CObservation3DRangeScan& scan) { scan.rangeImage.fill(0); });
-	EXPECT_EQ(run(arguments(blind)), 1);
+	EXPECT_EQ(run(arguments(blind, recorded_.rawlog)), 1);
 	EXPECT_EQ(summary()["frames_skipped"], recorded_.frames);
 	EXPECT_THAT(messages(), HasSubstr("no usable RGB-D frame"));
 }
@@ -184,7 +216,7 @@ TEST_F(SemloopSlamBadInput, TimeGoingBackwardsKeepsTheResultsSoFarAndFails)
 		{
 			if (index == 5) scan.timestamp = frameTime(2);
 		});
-	EXPECT_EQ(run(arguments(unsorted)), 1);
+	EXPECT_EQ(run(arguments(unsorted, recorded_.rawlog)), 1);
 	expectResultsSoFar(5);
 	EXPECT_THAT(
 		messages(), AllOf(
@@ -202,7 +234,7 @@ TEST_F(SemloopSlamBadInput, ADamagedFrameInTheMiddleIsSkippedWithAWarningAndCoun
 			if (index == 4) scan.intensityImage.setExternalStorage(image);
 			if (index == 6) scan.hasRangeImage = false;
 		});
-	ASSERT_EQ(run(arguments(damaged)), 0) << messages();
+	ASSERT_EQ(run(arguments(damaged, recorded_.rawlog)), 0) << messages();
 	EXPECT_EQ(summary()["frames"], recorded_.frames - 2);
 	EXPECT_EQ(summary()["frames_skipped"], 2);
 	EXPECT_EQ(summary()["ended_by"], "end of the rawlog");
@@ -221,7 +253,7 @@ TEST_F(SemloopSlamBadInput, AFrameSkippedRightBeforeTheRunEndsIsCountedToo)
 			if (index == 4) scan.hasRangeImage = false;
 			if (index == 5) scan.timestamp = frameTime(2);
 		});
-	EXPECT_EQ(run(arguments(damaged)), 1);
+	EXPECT_EQ(run(arguments(damaged, recorded_.rawlog)), 1);
 	EXPECT_EQ(summary()["frames"], 4);
 	EXPECT_EQ(summary()["frames_skipped"], 1);
 	EXPECT_THAT(messages(), AllOf(HasSubstr("no depth image"), HasSubstr("time goes backwards")));
