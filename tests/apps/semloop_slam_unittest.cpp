@@ -1,3 +1,6 @@
+#include <filesystem>
+#include <sstream>
+
 #include "SemloopSlamFixture.h"
 
 using namespace semloop;
@@ -18,6 +21,29 @@ TEST_F(SemloopSlam, MapsARawlogAndWritesItsResults)
 	EXPECT_EQ(summary()["frames"], recorded.frames);
 	EXPECT_EQ(summary()["frames_skipped"], 0);
 	EXPECT_THAT(readBytes(folder_.file("out")), HasSubstr("9 frames"));
+}
+
+TEST_F(SemloopSlam, EveryFileKeyAndStageOfTheResultsIsInTheManual)
+{
+	const RecordedRun recorded = recordShortRun();
+	ASSERT_EQ(run(arguments(recorded) + " --set slam.loop_every_frames=2"), 0) << messages();
+	const std::string manual = readBytes(SEMLOOP_SOURCE_DIR "/doc/file-formats.md");
+	const auto expectExplained = [&](const std::string& name)
+	{ EXPECT_THAT(manual, HasSubstr("`" + name + "`")); };
+
+	for (const auto& entry : std::filesystem::directory_iterator(folder_.file("result")))
+		if (entry.is_regular_file()) expectExplained(entry.path().filename().string());
+	const auto figures = summary();
+	for (const auto& entry : figures.items()) expectExplained(entry.key());
+	std::istringstream loops(readBytes(folder_.file("result/loops.jsonl")));
+	std::string line;
+	ASSERT_TRUE(std::getline(loops, line));
+	const auto loop = nlohmann::json::parse(line);
+	for (const auto& entry : loop.items()) expectExplained(entry.key());
+	std::istringstream stages(readBytes(folder_.file("result/timings.csv")));
+	std::getline(stages, line);
+	expectExplained(line);
+	while (std::getline(stages, line)) expectExplained(line.substr(0, line.find(',')));
 }
 
 TEST_F(SemloopSlam, StopsAfterMaxFrames)
@@ -58,7 +84,8 @@ TEST_F(SemloopSlam, WrongUsageExitsWithTwoAndOneLine)
 	const RecordedRun recorded = recordShortRun();
 	for (const char* wrong :
 		 {" --set odometry.dirft=1", " --set slam.level=perhaps", " --set nonsense",
-		  " --set modules.odometry=semloop::Teleporter", " --set tracing.gate=1"})
+		  " --set modules.odometry=semloop::Teleporter", " --set tracing.gate=1",
+		  " --max-frames -3", " --set modules.plugins=/no/such.so"})
 	{
 		EXPECT_EQ(run(arguments(recorded) + wrong), 2) << wrong;
 		const std::string text = messages();
