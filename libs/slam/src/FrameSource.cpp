@@ -1,5 +1,5 @@
-#include <mrpt/system/datetime.h>
 #include <semloop/config/Error.h>
+#include <semloop/observations/UnixTime.h>
 #include <semloop/slam/FrameSource.h>
 
 #include <condition_variable>
@@ -156,9 +156,9 @@ void FrameSource::checkTime(const CObservation3DRangeScan& scan)
 {
 	if (lastTime_ && scan.timestamp <= *lastTime_)
 		throw InputError(
-			reader_.path() + ": frame at " + mrpt::system::dateTimeToString(scan.timestamp) +
-			": time goes backwards (the frame before is of " +
-			mrpt::system::dateTimeToString(*lastTime_) + "); sort the rawlog by time first");
+			reader_.path() + ": frame at " + formatUnixTime(scan.timestamp) +
+			": time goes backwards (the frame before is of " + formatUnixTime(*lastTime_) +
+			"); sort the rawlog by time first");
 	lastTime_ = scan.timestamp;
 }
 
@@ -176,7 +176,7 @@ bool FrameSource::prepare(const CObservation3DRangeScan::Ptr& scan, SlamFrame& f
 	{
 		const std::string what = e.what();
 		pendingSkipped_.push_back(
-			reader_.path() + ": frame at " + mrpt::system::dateTimeToString(scan->timestamp) +
+			reader_.path() + ": frame at " + formatUnixTime(scan->timestamp) +
 			" skipped: " + what.substr(0, what.find('\n')));
 		return false;
 	}
@@ -192,7 +192,7 @@ void FrameSource::requireSize(const CObservationInstances& recorded, const RgbdF
 	const cv::Size wanted = raw.color.size(), size = recorded.imageSize();
 	if (size == wanted) return;
 	throw InputError(
-		reader_.path() + ": instances at " + mrpt::system::dateTimeToString(recorded.timestamp) +
+		reader_.path() + ": instances at " + formatUnixTime(recorded.timestamp) +
 		" are of an image of " + text(size) + ", but the frame's is " + text(wanted) +
 		"; make them from this rawlog with rawlog-segment");
 }
