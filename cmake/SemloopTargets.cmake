@@ -42,6 +42,7 @@ function(semloop_add_program name)
   target_compile_definitions(${name} PRIVATE SEMLOOP_VERSION="${PROJECT_VERSION}")
   semloop_compile_options(${name})
   install(TARGETS ${name} RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR})
+  set_property(GLOBAL APPEND PROPERTY SEMLOOP_PROGRAMS ${name})
 endfunction()
 
 # semloop_add_tests(FOLDER targets...) makes bin/test-FOLDER of the *_unittest.cpp in tests/FOLDER.

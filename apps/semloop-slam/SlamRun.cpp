@@ -9,6 +9,7 @@
 #include <cstdio>
 #include <filesystem>
 #include <iostream>
+#include <optional>
 
 #include "Application.h"
 #include "ProgressBar.h"
@@ -18,6 +19,8 @@ namespace semloop
 {
 namespace
 {
+const char* const kCtrlC = "Ctrl-C";
+
 /** Warnings and news on stderr, one line each, without tearing the progress bar. */
 class ConsoleLogger : public mrpt::system::COutputLogger
 {
@@ -70,14 +73,10 @@ void useRecordedInstances(mrpt::config::CConfigFileBase& config, const SlamRunAr
 	ModuleNames names;
 	names.loadFromConfigFile(config, "modules");
 	const bool recorded = names.segmenter == "semloop::RecordedSegmenter";
-	if (!arguments.instances.empty())
-	{
-		requireFile(file, "make it with rawlog-segment");
-		if (!recorded)
-			throw UsageError(
-				"--instances needs semloop::RecordedSegmenter, but " + configFileName(config) +
-				": [modules] segmenter = " + names.segmenter);
-	}
+	if (!arguments.instances.empty() && !recorded)
+		throw UsageError(
+			"--instances needs semloop::RecordedSegmenter, but " + configFileName(config) +
+			": [modules] segmenter = " + names.segmenter);
 	if (recorded) config.write("segmentation", "file", file);
 }
 
@@ -98,6 +97,22 @@ void report(const std::vector<std::string>& warnings, Progress& progress)
 	}
 }
 
+/** The next frame, and the warnings about those that were skipped before it or before the end. */
+std::optional<SlamFrame> nextFrame(FrameSource& source, Progress& progress)
+{
+	try
+	{
+		auto frame = source.next();
+		report(frame ? frame->skipped : source.skippedAtEnd(), progress);
+		return frame;
+	}
+	catch (const std::exception&)
+	{
+		report(source.skippedAtEnd(), progress);
+		throw;
+	}
+}
+
 /** What ended the run early because of bad input; empty otherwise. */
 std::string processAll(FrameSource& source, std::size_t maxFrames, Progress progress)
 {
@@ -110,13 +125,8 @@ std::string processAll(FrameSource& source, std::size_t maxFrames, Progress prog
 		}
 		try
 		{
-			const auto frame = source.next();
-			if (!frame)
-			{
-				report(source.skippedAtEnd(), progress);
-				return {};
-			}
-			report(frame->skipped, progress);
+			const auto frame = nextFrame(source, progress);
+			if (!frame) return {};
 			progress.slam.process(*frame);
 			progress.bar.update(progress.slam.frameCount(), frame->progress);
 		}
@@ -126,7 +136,7 @@ std::string processAll(FrameSource& source, std::size_t maxFrames, Progress prog
 			return progress.info.endedBy = what.substr(0, what.find('\n'));
 		}
 	}
-	progress.info.endedBy = "Ctrl-C";
+	progress.info.endedBy = kCtrlC;
 	return {};
 }
 
@@ -176,6 +186,13 @@ int runSlam(const SlamRunArguments& arguments)
 		std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
 	writeRunResults(arguments.output, slam, info, timings);
 	printSummary(arguments, slam, info);
+	if (failure.empty() && slam.frameCount() > 0 && slam.segmentedFrameCount() == 0)
+		std::cerr
+			<< "semloop-slam: warning: no frame has instances, so there are no objects and no "
+			   "loops; were they made from this rawlog?\n";
+	if (info.endedBy == kCtrlC)
+		std::cerr << "semloop-slam: stopped by Ctrl-C; results so far are in " << arguments.output
+				  << "\n";
 	if (failure.empty() && slam.frameCount() == 0 && !stopRequested())
 		failure = arguments.rawlog +
 				  ": no usable RGB-D frame (CObservation3DRangeScan with colour and depth) in it";

@@ -1,3 +1,4 @@
+#include <semloop/config/Error.h>
 #include <semloop/slam/Configuration.h>
 
 #include <iostream>
@@ -30,7 +31,7 @@ int main(int argc, char** argv)
 			TCLAP::MultiArg<std::string> set(
 				"s", "set", "overrides one key of the configuration", false, "section.key=value",
 				command);
-			TCLAP::ValueArg<std::size_t> maxFrames(
+			TCLAP::ValueArg<long> maxFrames(
 				"", "max-frames", "stops after so many frames; 0: all", false, 0, "N", command);
 			TCLAP::SwitchArg helpConfig(
 				"", "help-config", "prints the reference of all configuration keys", command);
@@ -40,13 +41,15 @@ int main(int argc, char** argv)
 				std::cout << semloop::configurationReference();
 				return semloop::kSuccess;
 			}
+			if (maxFrames.getValue() < 0)
+				throw semloop::UsageError("--max-frames must be at least 0 (0: all)");
 			semloop::SlamRunArguments arguments;
 			arguments.config = config.getValue();
 			arguments.rawlog = input.getValue();
 			arguments.output = output.getValue();
 			arguments.instances = instances.getValue();
 			arguments.overrides = set.getValue();
-			arguments.maxFrames = maxFrames.getValue();
+			arguments.maxFrames = std::size_t(maxFrames.getValue());
 			return semloop::runSlam(arguments);
 		});
 }

@@ -130,10 +130,10 @@ int run(int argc, char** argv)
 			"; run the same command again to go on");
 	if (sidecar.contents().times.empty())
 		throw InputError(
-			arguments.rawlog + ": " +
-			(!report.inputDamage.empty() ? report.inputDamage
-			 : report.frames > 0         ? "none of its frames could be used"
-								 : "holds no CObservation3DRangeScan: is it an RGB-D rawlog?"));
+			!report.inputDamage.empty() ? report.inputDamage
+			: report.frames > 0
+				? arguments.rawlog + ": none of its frames could be used"
+				: arguments.rawlog + ": holds no CObservation3DRangeScan: is it an RGB-D rawlog?");
 	printSummary(arguments.output, sidecar.contents(), report.skipped);
 	if (!report.inputDamage.empty()) throw InputError(report.inputDamage);
 	return kSuccess;

@@ -1,6 +1,7 @@
 #include <semloop/config/Error.h>
 
 #include <cstdio>
+#include <filesystem>
 #include <iostream>
 
 #include "Application.h"
@@ -18,7 +19,7 @@ mrpt::img::TCamera chooseCamera(const std::string& option, const std::string& di
 {
 	if (!option.empty()) return tumCamera(option);
 	const auto guess = guessTumCamera(directory);
-	if (!guess)
+	if (!guess && std::filesystem::is_directory(directory))
 		std::cerr << kName << ": the folder's name does not tell the camera, taking ros (fx = fy = "
 				  << "525, no distortion); use --camera for another\n";
 	return tumCamera(guess.value_or("ros"));

@@ -1,5 +1,3 @@
-#include "TinyOnnx.h"
-
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <mrpt/obs/CObservation3DRangeScan.h>
@@ -15,12 +13,17 @@
 #include <filesystem>
 #include <fstream>
 #include <iterator>
-#include <numeric>
+#include <memory>
 #include <opencv2/core.hpp>
+#include <opencv2/imgcodecs.hpp>
+
+#include "HeldFile.h"
+#include "TinyOnnx.h"
 
 namespace
 {
 using namespace semloop;
+using testing::AllOf;
 using testing::HasSubstr;
 namespace fs = std::filesystem;
 
@@ -208,22 +211,76 @@ TEST_F(RawlogSegment, AnInterruptedRunGoesOnWhereItStopped)
 	EXPECT_FALSE(fs::exists(folder_ / "in_instances.rawlog.previous"));
 }
 
-TEST_F(RawlogSegment, StoppingKeepsWhatIsDoneAndSaysHowToGoOn)
+/** The program waits for the colour image of the third of five frames. */
+class RawlogSegmentInterrupted : public RawlogSegment
 {
-	std::vector<double> times(3000);
-	std::iota(times.begin(), times.end(), 0.0);
-	writeRawlog(times);
-	const std::string stopWhenStarted =
-		"& while [ ! -e in_instances.rawlog.partial ]; do sleep 0.01; done; kill -TERM $!; wait $! "
-		"#";
-	EXPECT_EQ(run(stopWhenStarted), 1);
-	const auto partial = folder_ / "in_instances.rawlog.partial";
-	EXPECT_TRUE(fs::exists(partial));
+protected:
+	RawlogSegmentInterrupted()
+	{
+		const std::string held = path("held.png");
+		RawlogWriter writer(path("in.rawlog"));
+		for (int i = 0; i < 5; i++)
+		{
+			auto scan = scanAt(i);
+			if (i == 2)
+			{
+				std::vector<uint8_t> png;
+				cv::imencode(".png", scan.intensityImage.asCvMatRef(), png);
+				image_ = std::make_unique<HeldFile>(held, std::string(png.begin(), png.end()));
+				scan.intensityImage.setExternalStorage(held);
+			}
+			writer.write(scan);
+		}
+		writer.close();
+		program_ = std::make_unique<ChildProcess>(
+			std::vector<std::string>{
+				SEMLOOP_BINARY_DIR "/bin/rawlog-segment", path("in.rawlog"), "--model",
+				path("tiny.onnx"), "--labels", path("labels.txt"), "--set",
+				"segmentation.min_area=1"},
+			path("out.txt"), path("err.txt"));
+		image_->waitForReader(*program_);
+	}
+
+	std::string path(const std::string& name) const { return (folder_ / name).string(); }
+	/** Returns when the program has noticed it. */
+	void pressCtrlC()
+	{
+		ASSERT_TRUE(program_->catches(SIGINT));
+		program_->send(SIGINT);
+		waitUntil("Ctrl-C is noticed", [&] { return !program_->catches(SIGINT); });
+	}
+
+	std::unique_ptr<HeldFile> image_;
+	std::unique_ptr<ChildProcess> program_;
+};
+
+TEST_F(RawlogSegmentInterrupted, FinishesTheFrameSaysHowToGoOnAndGoesOnFromThere)
+{
+	pressCtrlC();
+	image_->release();
+	EXPECT_EQ(program_->exitCode(), 1);
+	EXPECT_THAT(errors(), HasSubstr("stopped after 3 frames"));
+	EXPECT_THAT(errors(), HasSubstr("run the same command again"));
 	EXPECT_FALSE(fs::exists(folder_ / "in_instances.rawlog"));
+	EXPECT_EQ(read("in_instances.rawlog.partial").size(), 3u);
 
 	ASSERT_EQ(run(""), 0) << errors();
-	EXPECT_FALSE(fs::exists(partial));
-	EXPECT_EQ(read("in_instances.rawlog").size(), 3000u);
+	EXPECT_THAT(errors(), HasSubstr("goes on after 3 frames"));
+	EXPECT_FALSE(fs::exists(folder_ / "in_instances.rawlog.partial"));
+	ASSERT_EQ(run("--out whole.rawlog"), 0) << errors();
+	EXPECT_EQ(contentOf(folder_ / "in_instances.rawlog"), contentOf(folder_ / "whole.rawlog"))
+		<< "as if it had not been interrupted";
+}
+
+TEST_F(RawlogSegmentInterrupted, ASecondTimeStopsAtOnceAndTheNextRunDoesTheRest)
+{
+	pressCtrlC();
+	program_->send(SIGINT);
+	EXPECT_EQ(program_->killedBy(), SIGINT);
+	EXPECT_FALSE(fs::exists(folder_ / "in_instances.rawlog"));
+	image_->makePlain();
+	ASSERT_EQ(run(""), 0) << errors();
+	EXPECT_EQ(read("in_instances.rawlog").size(), 5u);
 }
 
 TEST_F(RawlogSegment, ADamagedFrameIsSkippedWithAWarningAndCounted)
@@ -284,6 +341,8 @@ TEST_F(RawlogSegment, WrongUsageEndsWithTwoAndMissingFilesWithOne)
 	EXPECT_EQ(run("", "in.rawlog --model missing.onnx"), 1);
 	EXPECT_EQ(run("", "in.rawlog --model embedding.onnx"), 1);
 	EXPECT_THAT(errors(), HasSubstr("not a segmentation network"));
+	EXPECT_EQ(run("--set segmentation.input_width=640 --set segmentation.input_height=480"), 1);
+	EXPECT_THAT(errors(), AllOf(HasSubstr("64x32"), HasSubstr("640x480")));
 	EXPECT_EQ(run("--out /no/such/folder/out.rawlog"), 1);
 	EXPECT_THAT(errors(), HasSubstr("/no/such/folder/out.rawlog"));
 }

@@ -1,11 +1,7 @@
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-#include <sys/wait.h>
+#include <filesystem>
+#include <sstream>
 
-#include <cstdlib>
-#include <nlohmann/json.hpp>
-
-#include "../slam/SyntheticRun.h"
+#include "SemloopSlamFixture.h"
 
 using namespace semloop;
 using namespace semloop::synthetic;
@@ -13,39 +9,8 @@ using testing::HasSubstr;
 
 namespace
 {
-class SemloopSlam : public testing::Test
+class SemloopSlam : public SemloopSlamFixture
 {
-protected:
-	/** The exit code; what was printed is in files out and err. */
-	int run(const std::string& arguments) const
-	{
-		const std::string command = "'" SEMLOOP_BINARY_DIR "/bin/semloop-slam' " + arguments +
-									" > '" + folder_.file("out") + "' 2> '" + folder_.file("err") +
-									"'";
-		const int status = std::system(command.c_str());
-		return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
-	}
-	std::string messages() const { return readBytes(folder_.file("err")); }
-	nlohmann::json summary() const
-	{
-		return nlohmann::json::parse(readBytes(folder_.file("result/summary.json")));
-	}
-
-	RecordedRun recordShortRun() const
-	{
-		RunOptions options;
-		options.degrees = 40;
-		return recordRun(folder_, options);
-	}
-	std::string arguments(const RecordedRun& recorded) const
-	{
-		return "-c '" SEMLOOP_SOURCE_DIR "/config_ini/recorded_odometry.ini' -i '" +
-			   recorded.rawlog + "' -o '" + folder_.file("result") +
-			   "' --set 'odometry.file=" + recorded.truth + "' --instances '" + recorded.rawlog +
-			   "'";
-	}
-
-	const TemporaryFolder folder_;
 };
 }  // namespace
 
@@ -56,6 +21,29 @@ TEST_F(SemloopSlam, MapsARawlogAndWritesItsResults)
 	EXPECT_EQ(summary()["frames"], recorded.frames);
 	EXPECT_EQ(summary()["frames_skipped"], 0);
 	EXPECT_THAT(readBytes(folder_.file("out")), HasSubstr("9 frames"));
+}
+
+TEST_F(SemloopSlam, EveryFileKeyAndStageOfTheResultsIsInTheManual)
+{
+	const RecordedRun recorded = recordShortRun();
+	ASSERT_EQ(run(arguments(recorded) + " --set slam.loop_every_frames=2"), 0) << messages();
+	const std::string manual = readBytes(SEMLOOP_SOURCE_DIR "/doc/file-formats.md");
+	const auto expectExplained = [&](const std::string& name)
+	{ EXPECT_THAT(manual, HasSubstr("`" + name + "`")); };
+
+	for (const auto& entry : std::filesystem::directory_iterator(folder_.file("result")))
+		if (entry.is_regular_file()) expectExplained(entry.path().filename().string());
+	const auto figures = summary();
+	for (const auto& entry : figures.items()) expectExplained(entry.key());
+	std::istringstream loops(readBytes(folder_.file("result/loops.jsonl")));
+	std::string line;
+	ASSERT_TRUE(std::getline(loops, line));
+	const auto loop = nlohmann::json::parse(line);
+	for (const auto& entry : loop.items()) expectExplained(entry.key());
+	std::istringstream stages(readBytes(folder_.file("result/timings.csv")));
+	std::getline(stages, line);
+	expectExplained(line);
+	while (std::getline(stages, line)) expectExplained(line.substr(0, line.find(',')));
 }
 
 TEST_F(SemloopSlam, StopsAfterMaxFrames)
@@ -96,7 +84,8 @@ TEST_F(SemloopSlam, WrongUsageExitsWithTwoAndOneLine)
 	const RecordedRun recorded = recordShortRun();
 	for (const char* wrong :
 		 {" --set odometry.dirft=1", " --set slam.level=perhaps", " --set nonsense",
-		  " --set modules.odometry=semloop::Teleporter", " --set tracing.gate=1"})
+		  " --set modules.odometry=semloop::Teleporter", " --set tracing.gate=1",
+		  " --max-frames -3", " --set modules.plugins=/no/such.so"})
 	{
 		EXPECT_EQ(run(arguments(recorded) + wrong), 2) << wrong;
 		const std::string text = messages();

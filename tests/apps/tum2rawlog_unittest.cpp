@@ -301,7 +301,8 @@ TEST_F(Tum2Rawlog, AMissingFolderOrListIsNamed)
 	fs::remove(sequence_ / "rgb.txt");
 	expectFailure({"rgb.txt"});
 	EXPECT_EQ(runWith("/nonexistent '" + rawlog_ + "'"), 1);
-	EXPECT_THAT(err_, HasSubstr("/nonexistent"));
+	EXPECT_THAT(err_, HasSubstr("/nonexistent: no such folder"));
+	EXPECT_EQ(std::count(err_.begin(), err_.end(), '\n'), 1) << err_;
 }
 
 TEST_F(Tum2Rawlog, ADepthImageOf8BitsIsNamed)

@@ -21,12 +21,12 @@ struct ExampleOptions : Options
 	bool enabled = true;
 	int count = 3;
 	double share = 0.5;
-	double angle = 0.0;	 // [rad]
+	double angle = 0.0;  // [rad]
 	std::string name = "none";
 	std::string mode = "fast";
 	std::vector<std::string> plugins;
 
- protected:
+protected:
 	void describe(OptionFields& f) override
 	{
 		f.flag("enabled", enabled, "whether");
@@ -148,5 +148,11 @@ TEST(Options, AnUnknownSectionIsRefused)
 {
 	const CConfigFileMemory file(std::string("[example]\ncount = 1\n[exmaple]\ncount = 2\n"));
 	EXPECT_NO_THROW(requireKnownSections(file, {"example", "exmaple"}));
+	EXPECT_THROW(requireKnownSections(file, {"example"}), UsageError);
+}
+
+TEST(Options, AKeyOutsideAnySectionIsRefused)
+{
+	const CConfigFileMemory file(std::string("count = 1\n[example]\ncount = 2\n"));
 	EXPECT_THROW(requireKnownSections(file, {"example"}), UsageError);
 }

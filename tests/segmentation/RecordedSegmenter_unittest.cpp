@@ -10,6 +10,8 @@
 
 #include <filesystem>
 
+#include "TemporaryFolder.h"
+
 namespace
 {
 using namespace semloop;
@@ -144,7 +146,9 @@ TEST_F(RecordedSegmenterTest, AMissingFileOrKeyIsAnError)
 	mrpt::config::CConfigFileMemory config;
 	EXPECT_THROW(segmenter_.configure(config, "segmentation"), UsageError);
 	config.write("segmentation", "file", "/no/such/file.rawlog");
-	EXPECT_THROW(segmenter_.configure(config, "segmentation"), InputError);
+	EXPECT_THAT(
+		messageOf<InputError>([&] { segmenter_.configure(config, "segmentation"); }),
+		testing::AllOf(HasSubstr("/no/such/file.rawlog"), HasSubstr("rawlog-segment")));
 	EXPECT_THROW(RecordedSegmenter().segment(frameAt(1.0)), UsageError);
 }
 

@@ -3,6 +3,7 @@
 #include <semloop/config/ModuleFactory.h>
 
 #include <algorithm>
+#include <cctype>
 
 namespace semloop
 {
@@ -17,6 +18,13 @@ std::string registeredClassesOf(const mrpt::rtti::TRuntimeClassId* kind)
 	std::string all;
 	for (const auto& name : names) all += (all.empty() ? "" : ", ") + name;
 	return all.empty() ? "nothing: load a plug-in" : all;
+}
+
+std::string oneLine(std::string text)
+{
+	while (!text.empty() && std::isspace(static_cast<unsigned char>(text.back()))) text.pop_back();
+	std::replace(text.begin(), text.end(), '\n', ' ');
+	return text;
 }
 }  // namespace
 
@@ -39,7 +47,7 @@ void loadPlugins(const std::vector<std::string>& paths, const std::string& key)
 		std::string error;
 		if (!mrpt::system::loadPluginModule(path, error))
 			throw UsageError(
-				key + " = " + path + ": does not load (" + error.substr(0, error.find('\n')) +
+				key + " = " + path + ": does not load (" + oneLine(error) +
 				"); give a path with a / to a shared object");
 	}
 }

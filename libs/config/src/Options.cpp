@@ -225,6 +225,13 @@ std::string configFileName(const mrpt::config::CConfigFileBase& source)
 void requireKnownSections(
 	const mrpt::config::CConfigFileBase& source, const std::vector<std::string>& known)
 {
+	// MRPT has a nameless section for what stands above the first one.
+	std::vector<std::string> homeless;
+	source.getAllKeys("", homeless);
+	if (!homeless.empty())
+		throw UsageError(
+			configFileName(source) + ": " + homeless.front() +
+			": stands above the first section; put it below one of [" + join(known, "], [") + "]");
 	std::vector<std::string> sections;
 	source.getAllSections(sections);
 	for (const auto& section : sections)

@@ -122,6 +122,8 @@ CSerializable::Ptr RawlogReader::readObject()
 		if (file.state() == State::Damaged) fail("the compressed data are damaged");
 		if (file.state() != State::Good)
 			fail("the file ends inside a " + name + ": it was cut; what comes before can be used");
+		// Any first byte below 0x80 looks like the old format.
+		if (isOldFormat) fail("no MRPT object: not a rawlog, or damaged");
 		const std::string reason = innermostMessage(e.what());
 		const bool unknown = reason.find("not registered") != std::string::npos;
 		fail(

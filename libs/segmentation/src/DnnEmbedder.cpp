@@ -67,6 +67,7 @@ void DnnEmbedder::configure(const mrpt::config::CConfigFileBase& config, const s
 {
 	DnnEmbedderOptions options;
 	options.loadFromConfigFile(config, section);
+	requireModel(config, section, options.model);
 	configure(options);
 }
 

@@ -1,6 +1,7 @@
 #include "DnnNetwork.h"
 
 #include <semloop/config/Error.h>
+#include <semloop/config/Options.h>
 #include <semloop/segmentation/OnnxInfo.h>
 
 #include <algorithm>
@@ -77,6 +78,16 @@ std::string remedy(const std::optional<OnnxInfo>& onnx)
 		   ": export it with opset 12 and a fixed input size (a Clip needs opset 10), " + kManual;
 }
 }  // namespace
+
+void requireModel(
+	const mrpt::config::CConfigFileBase& config, const std::string& section,
+	const std::string& model)
+{
+	if (model.empty())
+		throw UsageError(
+			configFileName(config) + ": [" + section +
+			"] model: missing; name the network's file, " + kManual);
+}
 
 DnnNetwork::DnnNetwork(const std::string& path, const std::string& configPath, cv::Size wantedSize)
 	: path_(path)

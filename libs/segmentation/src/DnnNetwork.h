@@ -1,5 +1,7 @@
 #pragma once
 
+#include <mrpt/config/CConfigFileBase.h>
+
 #include <opencv2/dnn.hpp>
 #include <string>
 #include <vector>
@@ -12,6 +14,11 @@ struct InputScaling
 	double mean = 0.0;
 	double scale = 1.0;
 };
+
+/** Throws UsageError when a configuration's section does not name a network. */
+void requireModel(
+	const mrpt::config::CConfigFileBase& config, const std::string& section,
+	const std::string& model);
 
 /** A network in cv::dnn that has shown that it runs. */
 class DnnNetwork

@@ -143,6 +143,7 @@ void DnnSegmenter::configure(
 {
 	DnnSegmenterOptions options;
 	options.loadFromConfigFile(config, section);
+	requireModel(config, section, options.model);
 	configure(options);
 }
 

@@ -3,6 +3,7 @@
 #include <semloop/segmentation/RecordedSegmenter.h>
 
 #include <chrono>
+#include <filesystem>
 
 namespace semloop
 {
@@ -47,6 +48,11 @@ void RecordedSegmenter::configure(
 
 void RecordedSegmenter::configure(const RecordedSegmenterOptions& options)
 {
+	if (!std::filesystem::exists(options.file))
+		throw InputError(
+			options.file +
+			": no such file; make it with rawlog-segment, or name another rawlog with "
+			"instances");
 	reader_ = std::make_unique<RawlogReader>(options.file);
 	next_.reset();
 	lastRead_.reset();

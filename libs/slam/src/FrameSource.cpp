@@ -1,5 +1,5 @@
-#include <mrpt/system/datetime.h>
 #include <semloop/config/Error.h>
+#include <semloop/observations/UnixTime.h>
 #include <semloop/slam/FrameSource.h>
 
 #include <condition_variable>
@@ -11,6 +11,14 @@ using mrpt::obs::CObservation3DRangeScan;
 
 namespace semloop
 {
+namespace
+{
+std::string text(cv::Size size)
+{
+	return std::to_string(size.width) + "x" + std::to_string(size.height);
+}
+}  // namespace
+
 /** Bounded hand-over between the reading thread and the consumer. */
 class FrameSource::Queue
 {
@@ -31,7 +39,7 @@ public:
 	{
 		const std::lock_guard lock(mutex_);
 		finished_ = true;
-		error_ = error;
+		error_ = std::move(error);
 		changed_.notify_all();
 	}
 	void stop()
@@ -88,7 +96,8 @@ FrameSource::FrameSource(
 			{
 				error = std::current_exception();
 			}
-			queue_->finish(error);
+			// Moved: the last to hold the exception must be the consumer, who may still read it.
+			queue_->finish(std::move(error));
 		});
 }
 
@@ -147,9 +156,9 @@ void FrameSource::checkTime(const CObservation3DRangeScan& scan)
 {
 	if (lastTime_ && scan.timestamp <= *lastTime_)
 		throw InputError(
-			reader_.path() + ": frame at " + mrpt::system::dateTimeToString(scan.timestamp) +
-			": time goes backwards (the frame before is of " +
-			mrpt::system::dateTimeToString(*lastTime_) + "); sort the rawlog by time first");
+			reader_.path() + ": frame at " + formatUnixTime(scan.timestamp) +
+			": time goes backwards (the frame before is of " + formatUnixTime(*lastTime_) +
+			"); sort the rawlog by time first");
 	lastTime_ = scan.timestamp;
 }
 
@@ -167,7 +176,7 @@ bool FrameSource::prepare(const CObservation3DRangeScan::Ptr& scan, SlamFrame& f
 	{
 		const std::string what = e.what();
 		pendingSkipped_.push_back(
-			reader_.path() + ": frame at " + mrpt::system::dateTimeToString(scan->timestamp) +
+			reader_.path() + ": frame at " + formatUnixTime(scan->timestamp) +
 			" skipped: " + what.substr(0, what.find('\n')));
 		return false;
 	}
@@ -176,6 +185,16 @@ bool FrameSource::prepare(const CObservation3DRangeScan::Ptr& scan, SlamFrame& f
 	frame.rgbd = rectifier_.rectify(raw);
 	if (frame.instances) frame.instances = rectifier_.rectify(*frame.instances);
 	return true;
+}
+
+void FrameSource::requireSize(const CObservationInstances& recorded, const RgbdFrame& raw) const
+{
+	const cv::Size wanted = raw.color.size(), size = recorded.imageSize();
+	if (size == wanted) return;
+	throw InputError(
+		reader_.path() + ": instances at " + formatUnixTime(recorded.timestamp) +
+		" are of an image of " + text(size) + ", but the frame's is " + text(wanted) +
+		"; make them from this rawlog with rawlog-segment");
 }
 
 void FrameSource::segment(const RgbdFrame& raw, SlamFrame& frame)
@@ -187,6 +206,7 @@ void FrameSource::segment(const RgbdFrame& raw, SlamFrame& frame)
 	if (recorded && recorded->timestamp == raw.time)
 	{
 		lookAhead_.reset();
+		requireSize(*recorded, raw);
 		frame.instances = recorded;
 	}
 	else

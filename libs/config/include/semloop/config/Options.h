@@ -20,15 +20,15 @@ struct OptionField
 	Target target;
 	double minimum = -std::numeric_limits<double>::infinity();
 	double maximum = std::numeric_limits<double>::infinity();
-	double scale = 1.0;	 //!< value in the file = value in memory * scale (180 / pi for degrees)
+	double scale = 1.0;  //!< value in the file = value in memory * scale (180 / pi for degrees)
 	std::vector<std::string> choices;  //!< of a string; empty: any
-	std::string help;				   //!< one line: meaning, unit, equation
+	std::string help;                  //!< one line: meaning, unit, equation
 };
 
 /** Collects the fields of an options struct; see Options::describe(). */
 class OptionFields
 {
- public:
+public:
 	void flag(std::string key, bool& value, std::string help);
 	void integer(std::string key, int& value, int minimum, int maximum, std::string help);
 	void number(std::string key, double& value, double minimum, double maximum, std::string help);
@@ -43,7 +43,7 @@ class OptionFields
 
 	const std::vector<OptionField>& all() const { return fields_; }
 
- private:
+private:
 	std::vector<OptionField> fields_;
 };
 
@@ -54,7 +54,7 @@ class OptionFields
  *  with file, section, key, value and what is allowed. A missing key or section keeps the default. */
 class Options : public mrpt::config::CLoadableOptions
 {
- public:
+public:
 	void loadFromConfigFile(
 		const mrpt::config::CConfigFileBase& source, const std::string& section) override;
 	void saveToConfigFile(
@@ -66,7 +66,7 @@ class Options : public mrpt::config::CLoadableOptions
 
 	std::vector<OptionField> fields() const;
 
- protected:
+protected:
 	virtual void describe(OptionFields& fields) = 0;
 };
 
@@ -74,7 +74,8 @@ class Options : public mrpt::config::CLoadableOptions
  *  in memory. */
 std::string configFileName(const mrpt::config::CConfigFileBase& source);
 
-/** Throws UsageError when the file has a section that is not among the known ones. */
+/** Throws UsageError when the file has a section that is not among the known ones, or a key outside
+ *  any section. */
 void requireKnownSections(
 	const mrpt::config::CConfigFileBase& source, const std::vector<std::string>& known);
 

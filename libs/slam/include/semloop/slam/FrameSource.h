@@ -55,6 +55,7 @@ private:
 	/** False: the frame is to be skipped; why is in pendingSkipped_. */
 	bool prepare(const mrpt::obs::CObservation3DRangeScan::Ptr& scan, SlamFrame& frame);
 	void segment(const RgbdFrame& raw, SlamFrame& frame);
+	void requireSize(const CObservationInstances& recorded, const RgbdFrame& raw) const;
 	void checkTime(const mrpt::obs::CObservation3DRangeScan& scan);
 
 	std::shared_ptr<Segmenter> segmenter_;
