@@ -89,11 +89,23 @@ TEST(CObjectMapLoopClosure, MergingAddsTheEvidenceOfBoth)
 	EXPECT_THROW(map.mergeObjects(third, 0), std::out_of_range);
 }
 
-TEST(CObjectMapLoopClosure, ObjectsOfOtherLabelsAreNoDuplicatesUnlessTheDistributionsOverlap)
+TEST(CObjectMapLoopClosure, OneSurfaceUnderTwoNamesIsOneObject)
+{
+	CObjectMap map = mapOf(ballAndBox(), {kCup, kBook});
+	addAgain(map, ballAndBox(), {kBook, kBook}, 2, CPose3D());
+	auto duplicates = map.findDuplicates();
+	std::sort(duplicates.begin(), duplicates.end());
+	EXPECT_EQ(duplicates, (Pairs{{0, 2}, {1, 3}}));
+	map.maintenanceOptions.mergeIou = 0.9;
+	EXPECT_EQ(map.findDuplicates(), (Pairs{{1, 3}})) << "the surface alone does for one label only";
+}
+
+TEST(CObjectMapLoopClosure, LabelsAreCompatibleWhenTheDistributionsOverlap)
 {
 	const auto duplicatesWith = [](const LabelScores& scores)
 	{
 		CObjectMap map = mapOf(ballAndBox(), {kCup, kBook});
+		map.maintenanceOptions.mergeIou = 0.9;  // the surface has to do
 		const View view = renderView(ballAndBox(), testCamera(), onCircle(2, 8));
 		Instance ball = makeInstance(view.masks[1], kBook);
 		ball.labelScores = scores;

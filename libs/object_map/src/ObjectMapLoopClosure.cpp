@@ -70,16 +70,17 @@ double surfaceOverlap(const Object& a, const Object& b)
 double sameness(const Candidate& a, const Candidate& b, const ObjectMapMaintenanceOptions& options)
 {
 	const LabelScores &labelsA = a.object->labelScores, &labelsB = b.object->labelScores;
-	if (labelsA.front().label != labelsB.front().label &&
-		labelOverlap(labelsA, labelsB) <= options.mergeLabelOverlap)
-		return 0;
+	const bool compatible = labelsA.front().label == labelsB.front().label ||
+							labelOverlap(labelsA, labelsB) > options.mergeLabelOverlap;
 	if (!inflated(a).intersection(inflated(b))) return 0;
 	const double iou = std::max(
 		intersectionOverUnion(a.box, b.box), intersectionOverUnion(inflated(a), inflated(b)));
 	const bool aIsSmaller = inflated(a).volume() < inflated(b).volume();
 	const double onSurface =
 		aIsSmaller ? surfaceOverlap(*a.object, *b.object) : surfaceOverlap(*b.object, *a.object);
-	return iou > options.mergeIou || onSurface > options.mergeSurfaceOverlap ? iou + onSurface : 0;
+	const bool boxes = iou > options.mergeIou, surfaces = onSurface > options.mergeSurfaceOverlap;
+	const bool one = compatible ? boxes || surfaces : boxes && surfaces;
+	return one ? iou + onSurface : 0;
 }
 
 std::shared_ptr<TsdfVolume> mergedVolume(

@@ -6,6 +6,9 @@ namespace semloop
 {
 namespace
 {
+// A spilled mask leaves voxels that were seen inside of it once or twice.
+constexpr int enoughEvidence = 8;
+
 void count(TsdfBlock::Slice& slice, const TsdfBlock::Slice& voxels)
 {
 	slice.depthSum += voxels.depthSum;
@@ -39,8 +42,9 @@ void TsdfBlock::summarize(float skin)
 			low = std::min(low, x);
 			high = x;
 			if (distance[v] <= -skin) continue;
-			count(summary.slices[0][x], {-distance[v], 1});
-			count(ofRow, {-distance[v], 1});
+			const int times = std::min<int>(evidence[v], enoughEvidence);
+			count(summary.slices[0][x], {-distance[v] * float(times), times});
+			count(ofRow, {-distance[v] * float(times), times});
 		}
 		if (high < 0) continue;
 		summary.solid = true;

@@ -121,7 +121,9 @@ public:
 	/** Pairs (kept = older id, absorbed) of compatible labels that are one object: their boxes
 	 *  (axis-aligned in the world, a voxel wider on each side so that thin things overlap too) have an
 	 *  IoU above mergeIou, or more than mergeSurfaceOverlap of the smaller one's surface lies within
-	 *  two voxels of the larger one's. Boxes alone would unite neighbours that stand askew. Each object
+	 *  two voxels of the larger one's. Boxes alone would unite neighbours that stand askew. Of other
+	 *  labels, pairs of which both holds: a network may call one thing by two names, but two things have
+	 *  no surface in common. Each object
 	 *  comes once at most; merging changes what overlaps: ask again until there is none. With `among`,
 	 *  only pairs of these. */
 	std::vector<std::pair<ObjectId, ObjectId>> findDuplicates(
