@@ -45,17 +45,25 @@ function(semloop_add_program name)
   set_property(GLOBAL APPEND PROPERTY SEMLOOP_PROGRAMS ${name})
 endfunction()
 
-# semloop_add_tests(FOLDER targets...) makes bin/test-FOLDER of the *_unittest.cpp in tests/FOLDER.
+# semloop_add_tests(FOLDER targets... [FIXTURE name]) makes bin/test-FOLDER of the *_unittest.cpp in
+# tests/FOLDER; with a fixture they wait for the test that sets it up.
 function(semloop_add_tests name)
+  cmake_parse_arguments(arg "" "FIXTURE" "" ${ARGN})
   file(GLOB sources CONFIGURE_DEPENDS ${CMAKE_CURRENT_SOURCE_DIR}/${name}/*.cpp)
   if(NOT sources)
     return()
   endif()
   add_executable(test-${name} ${sources})
-  target_link_libraries(test-${name} PRIVATE GTest::gtest GTest::gmock GTest::gtest_main ${ARGN})
+  target_link_libraries(test-${name} PRIVATE GTest::gtest GTest::gmock GTest::gtest_main
+    ${arg_UNPARSED_ARGUMENTS})
   target_include_directories(test-${name} PRIVATE ${PROJECT_SOURCE_DIR}/tests/common)
   target_compile_definitions(test-${name} PRIVATE
     SEMLOOP_SOURCE_DIR="${PROJECT_SOURCE_DIR}" SEMLOOP_BINARY_DIR="${PROJECT_BINARY_DIR}")
   semloop_compile_options(test-${name})
-  gtest_discover_tests(test-${name} TEST_PREFIX ${name}. DISCOVERY_TIMEOUT 300 PROPERTIES TIMEOUT 600)
+  set(properties TIMEOUT 600)
+  if(arg_FIXTURE)
+    set(properties TIMEOUT 1800 FIXTURES_REQUIRED ${arg_FIXTURE})
+  endif()
+  gtest_discover_tests(test-${name} TEST_PREFIX ${name}. DISCOVERY_TIMEOUT 300
+    PROPERTIES ${properties})
 endfunction()
