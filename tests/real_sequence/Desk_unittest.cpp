@@ -17,6 +17,9 @@ namespace
 {
 using mrpt::math::TBoundingBox;
 using mrpt::math::TPoint3D;
+using testing::AllOf;
+using testing::Ge;
+using testing::Le;
 
 class Desk : public testing::Test
 {
@@ -38,6 +41,14 @@ protected:
 		const int status = std::system(command.c_str());
 		ASSERT_TRUE(WIFEXITED(status));
 		ASSERT_EQ(WEXITSTATUS(status), 0) << readBytes(folder_.file("log"));
+	}
+	/** The truth as odometry, spoilt by a drift [m]. */
+	void mapWithDrift(
+		const std::string& drift, const std::string& result, const std::string& options = {})
+	{
+		map("recorded_odometry.ini", result,
+			std::string("--set odometry.file=") + kTruth + " --set odometry.drift=" + drift + " " +
+				options);
 	}
 	/** RMSE after alignment [m]. */
 	double error(const std::string& trajectory) const
@@ -77,7 +88,7 @@ double intersectionOverUnion(const TBoundingBox& a, const TBoundingBox& b)
 
 TEST_F(Desk, EveryObjectIsInTheMapOnce)
 {
-	map("tum_rgbd.ini", "out");
+	ASSERT_NO_FATAL_FAILURE(map("tum_rgbd.ini", "out"));
 	for (const char* name :
 		 {"trajectory.tum", "trajectory_odometry.tum", "objects.json", "map.objmap",
 		  "map.simplemap", "scene.3Dscene", "pose_graph.g2o", "loops.jsonl", "timings.csv"})
@@ -87,21 +98,24 @@ TEST_F(Desk, EveryObjectIsInTheMapOnce)
 	EXPECT_EQ(summary["frames"], 573);
 	EXPECT_EQ(summary["frames_lost"], 0);
 	EXPECT_GE(summary["loops_accepted"], 1);
-	// What a person counts on the desk, give or take what is only seen at a glance.
+	// What a person counts on the desk, give or take what is seen at a glance or at the border only.
 	const auto& counts = summary["objects_by_label"];
-	EXPECT_GE(counts.value("book", 0), 3);
-	EXPECT_GE(counts.value("keyboard", 0), 1);
-	EXPECT_GE(counts.value("tv", 0) + counts.value("laptop", 0), 3);
-	EXPECT_GE(counts.value("chair", 0), 1);
-	EXPECT_LE(summary["objects"], 50);
+	const auto count = [&](const char* label) { return counts.value(label, 0); };
+	EXPECT_THAT(count("book"), AllOf(Ge(3), Le(8)));
+	EXPECT_THAT(count("keyboard"), AllOf(Ge(1), Le(4)));
+	EXPECT_THAT(count("tv") + count("laptop"), AllOf(Ge(3), Le(7)));
+	EXPECT_THAT(count("chair"), AllOf(Ge(1), Le(2)));
+	EXPECT_THAT(count("mouse"), AllOf(Ge(1), Le(3)));
 
 	const auto objects = loadObjectMap(folder_.file("out/map.objmap"));
 	for (const auto& [id, a] : objects->objects())
 		for (const auto& [other, b] : objects->objects())
 		{
-			if (id >= other || a.label() != b.label()) continue;
-			EXPECT_LE(intersectionOverUnion(worldBox(a), worldBox(b)), 0.3)
-				<< objects->labelName(a) << " " << id << " and " << other;
+			if (id >= other) continue;
+			EXPECT_LE(
+				intersectionOverUnion(worldBox(a), worldBox(b)), a.label() == b.label() ? 0.3 : 0.6)
+				<< objects->labelName(a) << " " << id << " and " << objects->labelName(b) << " "
+				<< other;
 		}
 
 	// OpenCV's odometry from frame to frame is off by 0.31 m here.
@@ -112,8 +126,7 @@ TEST_F(Desk, LoopClosuresMoreThanHalveADriftOfHalfAMetre)
 {
 	for (const char* const drift : {"0.5", "-0.5"})
 	{
-		map("recorded_odometry.ini", "out",
-			std::string("--set odometry.file=") + kTruth + " --set odometry.drift=" + drift);
+		ASSERT_NO_FATAL_FAILURE(mapWithDrift(drift, "out"));
 		EXPECT_GE(json("out/summary.json")["loops_accepted"], 1);
 		const double before = error("out/trajectory_odometry.tum");
 		// A drift that grows evenly from 0 to d has a standard deviation of d / sqrt(12).
@@ -124,8 +137,9 @@ TEST_F(Desk, LoopClosuresMoreThanHalveADriftOfHalfAMetre)
 
 TEST_F(Desk, TwoRunsGiveTheSameBytes)
 {
-	map("tum_rgbd.ini", "with", "--max-frames 120");
-	map("tum_rgbd.ini", "without", "--max-frames 120 --set slam.frames_ahead=0");
+	ASSERT_NO_FATAL_FAILURE(mapWithDrift("0.5", "with"));
+	ASSERT_NO_FATAL_FAILURE(mapWithDrift("0.5", "without", "--set slam.frames_ahead=0"));
+	EXPECT_GE(json("with/summary.json")["loops_accepted"], 1);
 	for (const char* name : {"trajectory.tum", "objects.json", "loops.jsonl", "pose_graph.g2o"})
 	{
 		const std::string with = readBytes(folder_.file(std::string("with/") + name));

@@ -72,6 +72,17 @@ TEST(LocalMap, ARemovedObjectIsGone)
 	map.see(2);
 	map.remove(1);
 	EXPECT_EQ(map.objects(), Ids{2});
-	map.clear();
-	EXPECT_TRUE(map.objects().empty());
+}
+
+TEST(LocalMap, ALoopIsDueAtFirstAndThenAfterAMetre)
+{
+	LocalMap map = twoMetreMap();
+	EXPECT_TRUE(map.isLoopDue());
+	map.advance(oneMetre);
+	map.loopClosed();
+	EXPECT_FALSE(map.isLoopDue());
+	map.advance(CPose3D(0.9, 0, 0, 0, 0, 0));
+	EXPECT_FALSE(map.isLoopDue());
+	map.advance(CPose3D(0.2, 0, 0, 0, 0, 0));
+	EXPECT_TRUE(map.isLoopDue());
 }

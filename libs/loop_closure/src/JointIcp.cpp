@@ -151,8 +151,10 @@ Matrix6d informationOf(
 
 	const auto found =
 		findCorrespondences({&pair, &pair + 1}, T, options.endDistance, options.maxNormalAngle);
+	// A handful of points is no surface.
+	constexpr double kEnough = 30;
 	const double scale = 1 / (mrpt::square(options.surfaceSigma) *
-							  std::max<double>(1, static_cast<double>(found.items.size())));
+							  std::max(kEnough, static_cast<double>(found.items.size())));
 	for (const auto& item : found.items)
 	{
 		const Eigen::Vector3d normal =

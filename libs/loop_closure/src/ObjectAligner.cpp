@@ -62,6 +62,7 @@ std::string objection(
 			options.maxCorrection);
 	return {};
 }
+
 /** Only the centres are known: they coincide, under the joint rotation. */
 MatchAlignment alignCentres(
 	const SurfacePair& pair, const mrpt::poses::CPose3D& T_joint,
@@ -91,13 +92,15 @@ std::vector<MatchAlignment> alignPairByPair(
 	{
 		MatchAlignment& alignment = result[pair.index];
 		const CloudPairs alone{&pair, &pair + 1};
-		const auto refined =
-			refine(alone, problem.toLocal(alignment.T_target_query), prior, options);
+		const auto refined = refine(alone, joint, prior, options);
 		const auto aligned =
 			findCorrespondences(alone, refined.T, options.endDistance, options.maxNormalAngle);
 		const auto fitness =
 			static_cast<double>(aligned.items.size()) / static_cast<double>(alone.queryPoints());
-		if (fitness < options.minFitness || aligned.rmse() > options.maxRmse) continue;
+		const double moved = (refined.T * pair.queryCentre - joint * pair.queryCentre).norm();
+		if (fitness < options.minFitness || aligned.rmse() > options.maxRmse ||
+			moved > options.startDistance)
+			continue;
 		alignment.T_target_query = problem.toWorld(refined.T);
 		alignment.information = informationOf(pair, refined.T, options);
 	}

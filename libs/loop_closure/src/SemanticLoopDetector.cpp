@@ -47,6 +47,7 @@ void dropWhatTheSurfacesRefute(
 {
 	std::vector<std::pair<ObjectId, ObjectId>> matches;
 	std::vector<MatchAlignment> alignments;
+	double sum = 0;
 	for (std::size_t i = 0; i < verdict.matches.size(); ++i)
 	{
 		const auto& [query, target] = verdict.matches[i];
@@ -57,7 +58,9 @@ void dropWhatTheSurfacesRefute(
 			continue;
 		matches.push_back(verdict.matches[i]);
 		alignments.push_back(verdict.alignments[i]);
+		sum += error.sqrNorm();
 	}
+	verdict.centreRmse = matches.empty() ? 0.0 : std::sqrt(sum / double(matches.size()));
 	verdict.matches = std::move(matches);
 	verdict.alignments = std::move(alignments);
 }
@@ -185,7 +188,7 @@ LoopVerdict SemanticLoopDetector::detect(
 		return reject(
 			verdict,
 			verdict.reason + text("; but under the pose of the surfaces only %zu do", left));
-	verdict.reason += "; " + alignment.reason;
+	verdict.reason += text("; %zu of them where ", left) + alignment.reason;
 	return verdict;
 }
 

@@ -82,7 +82,9 @@ void ObjectMapMaintenanceOptions::describe(OptionFields& fields)
 	fields.number("min_existence", minExistence, 0, 1, "below: the object is removed");
 	fields.number(
 		"merge_iou", mergeIou, 0, 1,
-		"boxes of two objects of compatible label that overlap more are one object");
+		"boxes of two objects of compatible label that overlap more are one object; of other "
+		"labels "
+		"when the surfaces do, too");
 	fields.number(
 		"merge_surface_overlap", mergeSurfaceOverlap, 0, 1,
 		"same, for the share of the smaller one's surface that lies on the larger one's");

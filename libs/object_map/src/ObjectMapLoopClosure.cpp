@@ -75,6 +75,7 @@ double sameness(const Candidate& a, const Candidate& b, const ObjectMapMaintenan
 	if (!inflated(a).intersection(inflated(b))) return 0;
 	const double iou = std::max(
 		intersectionOverUnion(a.box, b.box), intersectionOverUnion(inflated(a), inflated(b)));
+	if (!compatible && iou <= options.mergeIou) return 0;
 	const bool aIsSmaller = inflated(a).volume() < inflated(b).volume();
 	const double onSurface =
 		aIsSmaller ? surfaceOverlap(*a.object, *b.object) : surfaceOverlap(*b.object, *a.object);

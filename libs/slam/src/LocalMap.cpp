@@ -9,6 +9,9 @@ void LocalMapOptions::describe(OptionFields& f)
 {
 	f.number("length", length, 0.1, 1000, "path over which objects stay in the local map [m]");
 	f.number("metres_per_radian", metresPerRadian, 0, 100, "path that a turn counts as [m/rad]");
+	f.number(
+		"path_between_loops", pathBetweenLoops, 0, 1000,
+		"path after a loop closure before the next one is looked for [m]");
 }
 
 void LocalMap::advance(const mrpt::poses::CPose3D& T_previous_camera)

@@ -2,7 +2,10 @@
 #include <semloop/slam/LoopCloser.h>
 
 #include <map>
+#include <set>
+#include <stdexcept>
 #include <utility>
+#include <vector>
 
 using mrpt::poses::CPose3D;
 
@@ -12,6 +15,27 @@ namespace
 {
 // A detector that measures no object by itself says that all move as one, to 5 cm and 3 degrees.
 const Matrix6 kAsOneInformation = 400 * Matrix6::Identity();
+// Of chi squared with six degrees of freedom.
+constexpr double kQuantile999 = 22.46;
+
+/** The optimised poses are where the edge measured them. */
+bool agrees(const PoseEdge& edge, const PoseGraph& graph)
+{
+	const auto rigid = [](const CPose3D& pose) { return RigidTransform::fromPose(pose); };
+	const Vector6 e =
+		poseResidual(rigid(edge.Z_a_b), rigid(graph.pose(edge.a)), rigid(graph.pose(edge.b)));
+	return e.dot(edge.information * e) < kQuantile999;
+}
+
+void requireConsistent(const LoopVerdict& verdict)
+{
+	std::set<ObjectId> seen;
+	for (const auto& [query, target] : verdict.matches)
+		if (!seen.insert(query).second || !seen.insert(target).second)
+			throw std::logic_error("loop detector: an object is in two matches of one verdict");
+	if (!verdict.alignments.empty() && verdict.alignments.size() != verdict.matches.size())
+		throw std::logic_error("loop detector: not as many alignments as matches");
+}
 }  // namespace
 
 LoopCloser::LoopCloser(
@@ -36,15 +60,23 @@ LoopVerdict LoopCloser::detect(const LocalMap& localMap) const
 OptimizationReport LoopCloser::close(
 	const LoopVerdict& verdict, LocalMap& localMap, ObjectMapper& mapper)
 {
+	requireConsistent(verdict);
 	for (std::size_t i = 0; i < verdict.matches.size(); ++i)
 		addEdge(
 			verdict.matches[i].first, verdict.matches[i].second,
-			i < verdict.alignments.size()
-				? verdict.alignments[i]
-				: MatchAlignment{verdict.T_target_query, kAsOneInformation});
+			verdict.alignments.empty() ? MatchAlignment{verdict.T_target_query, kAsOneInformation}
+									   : verdict.alignments[i]);
+	const std::vector<PoseEdge> edges(
+		poseGraph_->edges().end() - std::ptrdiff_t(verdict.matches.size()),
+		poseGraph_->edges().end());
 	const OptimizationReport report = optimize();
-	for (const auto& [query, target] : verdict.matches) merge(target, query, localMap, mapper);
-	localMap.clear();
+	for (const PoseEdge& edge : edges)
+	{
+		if (!agrees(edge, *poseGraph_)) continue;
+		merge(edge.a.index, edge.b.index, localMap, mapper);
+		localMap.remove(edge.a.index);
+	}
+	localMap.loopClosed();
 	mergeAllDuplicates(localMap, mapper);
 	return report;
 }

@@ -124,7 +124,6 @@ std::optional<ObjectObservation> ObjectMapper::fuse(
 		const auto id = map_->addObject(frame, instance, T_world_camera);
 		if (!id) return std::nullopt;
 		result.object = *id;
-		result.isNew = true;
 	}
 	objectOfTrack_[tracked.track] = result.object;
 	return result;

@@ -1,6 +1,6 @@
 #include <mrpt/obs/CObservationIMU.h>
-#include <mrpt/system/datetime.h>
 #include <semloop/config/Error.h>
+#include <semloop/observations/UnixTime.h>
 #include <semloop/slam/SemanticSlam.h>
 
 #include <cmath>
@@ -57,7 +57,8 @@ void SemanticSlam::process(const SlamFrame& input)
 	detections_ += instances.instances.size();
 	if (segmentedFrames_ % std::size_t(options_.maintainEveryFrames) == 0) maintainMap();
 	// Sec. III-C: graph-based loop closure.
-	if (segmentedFrames_ % std::size_t(options_.loopEveryFrames) == 0) closeLoop(frame.time);
+	if (segmentedFrames_ % std::size_t(options_.loopEveryFrames) == 0 && localMap_.isLoopDue())
+		closeLoop(frame.time);
 }
 
 void SemanticSlam::observe(const mrpt::obs::CObservation& observation)
@@ -78,7 +79,7 @@ void SemanticSlam::adoptLabels(const CObservationInstances& instances)
 	if (map_->labels() == labels) return;
 	if (map_->labels().size() > 0)
 		throw InputError(
-			"instances at " + mrpt::system::dateTimeToString(instances.timestamp) +
+			"instances at " + formatUnixTime(instances.timestamp) +
 			": their label set is not that of the instances before; segment the rawlog again with "
 			"one network");
 	map_->setLabels(labels);

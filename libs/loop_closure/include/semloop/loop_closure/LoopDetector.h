@@ -33,9 +33,10 @@ struct LoopVerdict
 
 	Decision decision = Decision::Rejected;
 	std::string reason;  //!< one line for a person, with the numbers behind it
-	std::vector<std::pair<ObjectId, ObjectId>> matches;  //!< the consistent ones, query id first
-	mrpt::poses::CPose3D T_target_query;                 //!< meaningful when accepted
-	/** In the order of matches: the local map has its own drift, so each object has its own
+	/** The consistent ones, query id first; an object is in one match at most. */
+	std::vector<std::pair<ObjectId, ObjectId>> matches;
+	mrpt::poses::CPose3D T_target_query;  //!< meaningful when accepted
+	/** As many as matches, in their order: the local map has its own drift, so each object has its own
 	 *  correction. Empty when the detector measures none; T_target_query then holds for all. */
 	std::vector<MatchAlignment> alignments;
 	std::size_t queryObjects = 0;      //!< objects in the local map

@@ -29,7 +29,7 @@ struct ObjectAlignerOptions : Options
 	double rotationSigma = 0.2;    //!< how far an object's rotation is from the joint one [rad]
 	double minFitness = 0.3;       //!< aligned share of the query's points
 	double maxRmse = 0.025;        //!< of the aligned points, along the target's normals [m]
-	double maxCorrection = 0.7;    //!< from the semantic pose, at the query's centre [m]
+	double maxCorrection = 0.7;    //!< from the semantic pose, RMS over the query's points [m]
 	double featureRadius = 0.12;   //!< of an FPFH [m]
 	double ransacDistance = 0.06;  //!< of an inlier [m]
 	int ransacIterations = 20000;
@@ -80,8 +80,8 @@ public:
 
 	/** T_semantic is the T_target_query of the matched centres.
 	 *
-	 *  An accepted result is refined pair by pair, for between two objects of the query there is drift
-	 *  too. The cost is the joint one of that pair alone, with |log R R_joint^T|^2 / rotationSigma^2 for
+	 *  After an accepted result each pair is aligned by itself, for between two objects of the query
+	 *  there is drift too; it starts at the joint pose. The cost is the joint one of that pair alone, with |log R R_joint^T|^2 / rotationSigma^2 for
 	 *  what its surface leaves open, as a flat object does its yaw; a pair whose surfaces do not align
 	 *  has its centres only. The information is the cost's Hessian. */
 	ObjectAlignment align(

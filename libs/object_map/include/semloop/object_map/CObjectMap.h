@@ -118,12 +118,12 @@ public:
 	void moveObjects(const std::map<ObjectId, mrpt::poses::CPose3D>& poses);
 	/** Puts `absorbed` into `kept` where both stand now, and removes it. */
 	void mergeObjects(ObjectId kept, ObjectId absorbed);
-	/** Pairs (kept = older id, absorbed) of compatible labels that are one object: their boxes
+	/** Pairs (kept = older id, absorbed) that are one object. Of compatible labels: their boxes
 	 *  (axis-aligned in the world, a voxel wider on each side so that thin things overlap too) have an
 	 *  IoU above mergeIou, or more than mergeSurfaceOverlap of the smaller one's surface lies within
 	 *  two voxels of the larger one's. Boxes alone would unite neighbours that stand askew. Of other
-	 *  labels, pairs of which both holds: a network may call one thing by two names, but two things have
-	 *  no surface in common. Each object
+	 *  labels: both, for a network may call one thing by two names, but two things have no surface in
+	 *  common. Each object
 	 *  comes once at most; merging changes what overlaps: ask again until there is none. With `among`,
 	 *  only pairs of these. */
 	std::vector<std::pair<ObjectId, ObjectId>> findDuplicates(
@@ -132,7 +132,8 @@ public:
 
 	/** @name mrpt::maps::CMetricMap
 	 * insertObservation() takes CObservationInstances with depth crops, alone or in a CSensoryFrame:
-	 * it associates them with predict() by Eq. (1)-(3), fuses, adds and removes. The likelihood of
+	 * it associates them with predict() by Eq. (1)-(3), p(l_k | l_j) being ConfusionMatrix(labels(), 0.8)
+	 * as no configuration of a run reaches it, fuses, adds and removes. The likelihood of
 	 * such an observation is sum over detections k of log(q + (1 - q) max over j of (1 - L(j,k))), q =
 	 * 0.1 being the share of detections that the map cannot explain.
 	 * @{ */

@@ -34,7 +34,7 @@ struct TsdfBlock
 	static constexpr int voxel(int x, int y, int z) { return (z * side + y) * side + x; }
 
 	/** The voxels of one slice (perpendicular to an axis) that lie just inside the surface, each
-	 *  counted as often as it was seen inside the mask, 8 times at most. */
+	 *  counted as often as it was seen inside the mask more than outside, 8 times at most. */
 	struct Slice
 	{
 		float depthSum = 0;  //!< of their depths below the surface [m]

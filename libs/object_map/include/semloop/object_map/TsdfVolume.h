@@ -108,7 +108,7 @@ public:
 
 	/** Box of the surface in the object's frame: per axis the 1st to 99th percentile of the voxels just
 	 *  below the surface, moved outwards by their mean depth. A voxel counts as often as it was seen
-	 *  inside the mask (8 times at most), so what a mask spilled over once hardly does. Empty without a
+	 *  inside the mask more than outside (8 times at most), so what a mask spilled over once hardly does. Empty without a
 	 *  surface. Cheap. */
 	std::optional<mrpt::math::TBoundingBox> boundingBox() const;
 

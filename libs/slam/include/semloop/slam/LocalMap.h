@@ -5,6 +5,7 @@
 #include <semloop/object_map/Object.h>
 
 #include <map>
+#include <optional>
 #include <set>
 
 namespace semloop
@@ -13,12 +14,15 @@ struct LocalMapOptions : Options
 {
 	double length = 2.0;           //!< path over which objects stay in the local map [m]
 	double metresPerRadian = 0.5;  //!< a turn counts as this much path [m/rad]
+	double pathBetweenLoops =
+		1.0;  //!< before that the drift since the last loop is not known better [m]
 
 protected:
 	void describe(OptionFields& fields) override;
 };
 
-/** The objects seen over the last few metres of path, i.e. as far as odometry can be trusted
+/** The objects seen over the last few metres of path, i.e. as far as odometry can be trusted, without
+ *  those that a loop closure has just made one with objects of another time
  *  (Sec. III-B): what detections are associated with, and the query of the loop detection.
  *
  *  What has left the local map was built under another drift. When it comes into view again it is
@@ -31,7 +35,7 @@ public:
 
 	/** The camera moved. */
 	void advance(const mrpt::poses::CPose3D& T_previous_camera);
-	/** The object was seen from the current camera, or is known to be near it. */
+	/** The object was seen from the current camera. */
 	void see(ObjectId id) { lastSeen_[id] = path_; }
 
 	bool contains(ObjectId id) const;
@@ -40,14 +44,19 @@ public:
 	/** absorbed is a part of kept from now on. */
 	void merge(ObjectId kept, ObjectId absorbed);
 	void remove(ObjectId id) { lastSeen_.erase(id); }
-	/** The next local map begins. */
-	void clear() { lastSeen_.clear(); }
+	void loopClosed() { pathAtLoop_ = path_; }
+	/** Far enough from the last loop closure to look for another one. */
+	bool isLoopDue() const
+	{
+		return !pathAtLoop_ || path_ - *pathAtLoop_ >= options_.pathBetweenLoops;
+	}
 
 	double path() const { return path_; }  //!< travelled so far [m]
 
 private:
 	LocalMapOptions options_;
 	double path_ = 0.0;
+	std::optional<double> pathAtLoop_;
 	std::map<ObjectId, double> lastSeen_;  //!< object -> path when last seen [m]
 };
 

@@ -24,9 +24,10 @@ public:
 	/** Query: the local map; target: everything else. */
 	LoopVerdict detect(const LocalMap& localMap) const;
 	/** Carries out an accepted verdict: an edge joins each matched object of the local map to its
-	 *  partner, all poses are optimised, and the objects moved and merged; the pose graph keeps both
-	 *  nodes of a merged object. A new local map begins, so that the next loop closure measures how
-	 *  the drift goes on. */
+	 *  partner, all poses are optimised, and the objects moved and merged, except where the other
+	 *  measurements contradict the edge. The pose graph keeps both nodes of a merged object. Merged
+	 *  objects leave the local map, so that the next loop closure measures how the drift goes on.
+	 *  Throws std::logic_error, with nothing changed, on a verdict that breaks LoopVerdict's rules. */
 	OptimizationReport close(const LoopVerdict& verdict, LocalMap& localMap, ObjectMapper& mapper);
 
 	/** Optimises, and moves the objects to where the graph has them. */

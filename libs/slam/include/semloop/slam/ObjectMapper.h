@@ -20,7 +20,6 @@ struct ObjectObservation
 	ObjectId object = 0;
 	std::size_t instance = 0;  //!< index in the frame's observation
 	uint64_t track = 0;
-	bool isNew = false;
 };
 
 /** Sec. III-B, object-level data association and fusion: detections that the tracker confirmed are
