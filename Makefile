@@ -39,7 +39,7 @@ test-sanitize: dependencies ## runs all tests under AddressSanitizer and Undefin
 	cmake -S . -B $(BUILD_DIR)-sanitize -G Ninja -DCMAKE_BUILD_TYPE=RelWithDebInfo \
 		-DSEMLOOP_SANITIZE=$(SANITIZE) -DSEMLOOP_BUILD_BENCHMARKS=OFF $(CMAKE_ARGS)
 	cmake --build $(BUILD_DIR)-sanitize -j $(JOBS)
-	UBSAN_OPTIONS=print_stacktrace=1 ctest --test-dir $(BUILD_DIR)-sanitize -j $(JOBS) --output-on-failure
+	UBSAN_OPTIONS=print_stacktrace=1:halt_on_error=1:suppressions=$(CURDIR)/cmake/ubsan-suppressions.txt ctest --test-dir $(BUILD_DIR)-sanitize -j $(JOBS) --output-on-failure
 
 bench: build ## runs the benchmarks one after the other
 	@for program in $(BUILD_DIR)/bin/*_benchmark; do echo "== $$program"; $$program || exit 1; done

@@ -5,7 +5,12 @@ function(semloop_compile_options target)
     target_compile_options(${target} PRIVATE -Werror)
   endif()
   if(SEMLOOP_SANITIZE)
-    target_compile_options(${target} PRIVATE -fsanitize=${SEMLOOP_SANITIZE} -fno-omit-frame-pointer -fno-sanitize-recover=all)
+    # The suppressions of ubsan-suppressions.txt work on checks that can go on only.
+    target_compile_options(${target} PRIVATE -fsanitize=${SEMLOOP_SANITIZE} -fno-omit-frame-pointer
+      -fno-sanitize-recover=all -fsanitize-recover=alignment)
+    # Eigen aligns by hand under AddressSanitizer, but what it frees may come from Debian's libraries,
+    # which do not.
+    target_compile_definitions(${target} PRIVATE EIGEN_MALLOC_ALREADY_ALIGNED=1)
     target_link_options(${target} PRIVATE -fsanitize=${SEMLOOP_SANITIZE})
   endif()
 endfunction()
