@@ -1,7 +1,7 @@
+#include <mrpt/core/format.h>
 #include <semloop/loop_closure/ObjectAligner.h>
 
 #include <cmath>
-#include <cstdio>
 
 #include "SurfaceClouds.h"
 
@@ -37,27 +37,19 @@ double correctionOf(
 	return std::sqrt(sum / static_cast<double>(problem.all().queryPoints()));
 }
 
-template <class... Numbers>
-std::string text(const char* format, Numbers... numbers)
-{
-	char buffer[160];
-	std::snprintf(buffer, sizeof buffer, format, numbers...);
-	return buffer;
-}
-
 /** Empty when nothing speaks against the result. */
 std::string objection(
 	const ObjectAlignment& result, double correction, const ObjectAlignerOptions& options)
 {
 	if (result.fitness < options.minFitness)
-		return text(
+		return mrpt::format(
 			"only %.0f %% of the surface points align, needed are %.0f %%", 100 * result.fitness,
 			100 * options.minFitness);
 	if (result.rmse > options.maxRmse)
-		return text(
+		return mrpt::format(
 			"surfaces align to %.3f m only, needed are %.3f m", result.rmse, options.maxRmse);
 	if (correction > options.maxCorrection)
-		return text(
+		return mrpt::format(
 			"surfaces align %.2f m away from the objects' centres, allowed are %.2f m", correction,
 			options.maxCorrection);
 	return {};
@@ -188,8 +180,8 @@ ObjectAlignment ObjectAligner::align(
 	result.reason = objection(result, correctionOf(problem, refined.T, semantic), options);
 	result.accepted = result.reason.empty();
 	if (!result.accepted) return result;
-	result.reason =
-		text("%.0f %% of the surface points align to %.3f m", 100 * result.fitness, result.rmse);
+	result.reason = mrpt::format(
+		"%.0f %% of the surface points align to %.3f m", 100 * result.fitness, result.rmse);
 	result.pairs = alignPairByPair(problem, pairs, refined.T, options);
 	return result;
 }

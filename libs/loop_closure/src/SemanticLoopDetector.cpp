@@ -1,3 +1,4 @@
+#include <mrpt/core/format.h>
 #include <mrpt/core/initializer.h>
 #include <semloop/config/Error.h>
 #include <semloop/config/ModuleFactory.h>
@@ -6,7 +7,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 
 IMPLEMENTS_MRPT_OBJECT(SemanticLoopDetector, LoopDetector, semloop)
 
@@ -31,14 +31,6 @@ double driftOf(const mrpt::poses::CPose3D& T_target_query, const SemanticGraph& 
 	for (const auto& vertex : query.vertices) centroid += vertex.position;
 	centroid *= 1.0 / static_cast<double>(query.vertices.size());
 	return T_target_query.composePoint(centroid).distanceTo(centroid);
-}
-
-template <class... Numbers>
-std::string text(const char* format, Numbers... numbers)
-{
-	char buffer[160];
-	std::snprintf(buffer, sizeof buffer, format, numbers...);
-	return buffer;
 }
 
 /** Neighbours that were taken for each other fit the centres, not the surfaces of the others. */
@@ -115,7 +107,7 @@ LoopVerdict SemanticLoopDetector::detect(
 	verdict.queryObjects = query.vertices.size();
 	if (query.vertices.empty() || target.vertices.empty())
 		return reject(
-			verdict, text(
+			verdict, mrpt::format(
 						 "%zu objects against %zu: nothing to match", query.vertices.size(),
 						 target.vertices.size()));
 
@@ -130,7 +122,7 @@ LoopVerdict SemanticLoopDetector::detect(
 	if (verdict.matchedEdgeShare < options.minEdgeShare)
 		return reject(
 			verdict,
-			text(
+			mrpt::format(
 				"only %.0f %% of the %zu edges matched, needed are %.0f %%",
 				100 * verdict.matchedEdgeShare, query.edges.size(), 100 * options.minEdgeShare));
 
@@ -151,7 +143,7 @@ LoopVerdict SemanticLoopDetector::detect(
 	const double drift = driftOf(check.T_target_query, query);
 	if (options.maxDrift > 0 && drift > options.maxDrift)
 		return reject(
-			verdict, text(
+			verdict, mrpt::format(
 						 "the correction of %.2f m is larger than the %.2f m allowed", drift,
 						 options.maxDrift));
 	verdict.decision = Decision::Accepted;
@@ -186,9 +178,9 @@ LoopVerdict SemanticLoopDetector::detect(
 	const std::size_t left = verdict.matches.size();
 	if (static_cast<double>(left) < leastInliers(queryGraph, options.verification))
 		return reject(
-			verdict,
-			verdict.reason + text("; but under the pose of the surfaces only %zu do", left));
-	verdict.reason += text("; %zu of them where ", left) + alignment.reason;
+			verdict, verdict.reason +
+						 mrpt::format("; but under the pose of the surfaces only %zu do", left));
+	verdict.reason += mrpt::format("; %zu of them where ", left) + alignment.reason;
 	return verdict;
 }
 

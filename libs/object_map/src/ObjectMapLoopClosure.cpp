@@ -134,11 +134,12 @@ std::vector<std::pair<ObjectId, ObjectId>> CObjectMap::findDuplicates(
 	const std::optional<std::set<ObjectId>>& among) const
 {
 	std::vector<Candidate> candidates;
-	for (const auto& entry : objects_)
-		if (among && among->count(entry.first) == 0)
-			continue;
-		else if (const auto box = entry.second.volume->boundingBox())
-			candidates.push_back({&entry.second, worldBox(*box, entry.second.T_world_object)});
+	for (const auto& [id, object] : objects_)
+	{
+		if (among && among->count(id) == 0) continue;
+		if (const auto box = object.volume->boundingBox())
+			candidates.push_back({&object, worldBox(*box, object.T_world_object)});
+	}
 
 	struct Pair
 	{

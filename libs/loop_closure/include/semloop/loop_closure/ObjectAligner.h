@@ -81,9 +81,10 @@ public:
 	/** T_semantic is the T_target_query of the matched centres.
 	 *
 	 *  After an accepted result each pair is aligned by itself, for between two objects of the query
-	 *  there is drift too; it starts at the joint pose. The cost is the joint one of that pair alone, with |log R R_joint^T|^2 / rotationSigma^2 for
-	 *  what its surface leaves open, as a flat object does its yaw; a pair whose surfaces do not align
-	 *  has its centres only. The information is the cost's Hessian. */
+	 *  there is drift too; it starts at the joint pose. The cost is the joint one of that pair alone,
+	 *  with |log R R_joint^T|^2 / rotationSigma^2 in place of the tilt for what its surface leaves open,
+	 *  as a flat object does its yaw; a pair whose surfaces do not align has its centres only. The
+	 *  information is the cost's Hessian. */
 	ObjectAlignment align(
 		const std::vector<SurfacePair>& pairs, const mrpt::poses::CPose3D& T_semantic) const;
 
