@@ -11,6 +11,8 @@ packages=(
   # libraries
   libmrpt-dev libeigen3-dev libopencv-dev libopencv-contrib-dev libpcl-dev libceres-dev
   libopenni2-dev libspectra-dev nlohmann-json3-dev zlib1g-dev
+  # simulation
+  libembree-dev libtinyobjloader-dev libzip-dev sweethome3d-furniture
   # tests and benchmarks
   libgtest-dev libgmock-dev libbenchmark-dev mrpt-common xvfb xauth xz-utils libgl1-mesa-dri
   # MRPT's programs, to look at rawlogs and scenes

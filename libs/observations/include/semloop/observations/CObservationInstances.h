@@ -29,6 +29,8 @@ struct Instance
 	float confidence = 0;          //!< c_k in [0, 1]
 	std::vector<float> embedding;  //!< e_k, unit length; empty: none. Stored as half floats.
 	std::optional<DepthCrop> depth;
+	/** Of the real object, where truth is known (simulated or annotated data). For evaluation only. */
+	std::optional<uint32_t> trueObject;
 
 	uint32_t label() const { return labelScores.front().label; }
 };
