@@ -13,6 +13,7 @@
 
 #include "Application.h"
 #include "ProgressBar.h"
+#include "RunConfiguration.h"
 #include "StopSignal.h"
 
 namespace semloop
@@ -45,25 +46,6 @@ void requireArgument(const std::string& value, const char* flag, const char* wha
 	if (value.empty())
 		throw UsageError(std::string(flag) + " is missing: " + what + "; see semloop-slam --help");
 }
-
-void applyOverride(mrpt::config::CConfigFileBase& config, const std::string& text)
-{
-	const auto equals = text.find('=');
-	const auto dot = text.find('.');
-	if (equals == std::string::npos || dot == std::string::npos || dot > equals || dot == 0)
-		throw UsageError("--set " + text + ": write section.key=value");
-	config.write(
-		text.substr(0, dot), text.substr(dot + 1, equals - dot - 1), text.substr(equals + 1));
-}
-
-/** A configuration that --set changes for this run only, never on disk. */
-class RunConfiguration : public mrpt::config::CConfigFile
-{
-public:
-	explicit RunConfiguration(const std::string& path) : CConfigFile(path) {}
-	// MRPT would save the overrides otherwise.
-	~RunConfiguration() override { discardSavingChanges(); }
-};
 
 void useRecordedInstances(mrpt::config::CConfigFileBase& config, const SlamRunArguments& arguments)
 {
@@ -162,7 +144,7 @@ int runSlam(const SlamRunArguments& arguments)
 	requireWritableFolder(arguments.output);
 
 	RunConfiguration config(arguments.config);
-	for (const auto& text : arguments.overrides) applyOverride(config, text);
+	config.apply(arguments.overrides);
 	useRecordedInstances(config, arguments);
 
 	const auto start = std::chrono::steady_clock::now();

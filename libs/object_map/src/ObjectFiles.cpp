@@ -84,6 +84,13 @@ CObjectMap::Ptr loadObjectMap(const std::string& path)
 	return map;
 }
 
+std::string objectFileName(ObjectId id, std::string label)
+{
+	std::replace_if(
+		label.begin(), label.end(), [](unsigned char c) { return !std::isalnum(c); }, '-');
+	return std::to_string(id) + "_" + label + ".ply";
+}
+
 void savePly(
 	const std::string& path, const TriangleMesh& mesh, const mrpt::poses::CPose3D& T_world_object)
 {

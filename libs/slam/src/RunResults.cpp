@@ -35,14 +35,6 @@ void requireWritten(bool ok, const fs::path& path)
 	if (!ok) throw InputError(path.string() + ": cannot be written; is the disk full?");
 }
 
-/** A label as a part of a file name. */
-std::string fileNamePart(std::string label)
-{
-	std::replace_if(
-		label.begin(), label.end(), [](unsigned char c) { return !std::isalnum(c); }, '-');
-	return label;
-}
-
 void writeMeshes(const fs::path& folder, const SemanticSlam& slam)
 {
 	fs::remove_all(folder);
@@ -50,9 +42,9 @@ void writeMeshes(const fs::path& folder, const SemanticSlam& slam)
 	for (const auto& [id, object] : slam.map().objects())
 	{
 		if (object.observations < slam.options().minObservations) continue;
-		const std::string name =
-			std::to_string(id) + "_" + fileNamePart(slam.map().labelName(object)) + ".ply";
-		savePly((folder / name).string(), object.volume->mesh(), object.T_world_object);
+		savePly(
+			(folder / objectFileName(id, slam.map().labelName(object))).string(),
+			object.volume->mesh(), object.T_world_object);
 	}
 }
 

@@ -11,6 +11,10 @@ void saveObjectMap(const std::string& path, const CObjectMap& map);
 /** Throws InputError on a missing, cut or foreign file. */
 CObjectMap::Ptr loadObjectMap(const std::string& path);
 
+/** Name of an object's mesh file, `<id>_<label>.ply`; - where the label has anything but letters and
+ *  digits. */
+std::string objectFileName(ObjectId id, std::string label);
+
 /** Binary PLY of a mesh in world coordinates, with normals and colours. */
 void savePly(const std::string& path, const TriangleMesh& mesh, const mrpt::poses::CPose3D& T_world_object);
 

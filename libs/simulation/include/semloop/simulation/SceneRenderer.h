@@ -6,6 +6,7 @@
 
 #include <memory>
 #include <opencv2/core/mat.hpp>
+#include <vector>
 
 namespace semloop
 {
@@ -35,9 +36,10 @@ public:
 		const mrpt::img::TCamera& camera, const mrpt::poses::CPose3D& T_world_camera,
 		bool color) const;
 
-	/** Number of pixels that each object would cover if nothing stood before it, by SceneObject::id;
-	 *  for how much of it is hidden. Only objects in the view are counted. */
-	std::vector<uint32_t> unoccludedPixels(const RenderedView& view) const;
+	/** Share of each object that others hide in this view: 1 - seen / seen if it stood alone, by
+	 *  SceneObject::id; 0 for what is not in the view. Estimated on every fourth pixel of every fourth
+	 *  row. */
+	std::vector<float> hiddenShares(const RenderedView& view) const;
 
 private:
 	struct Impl;
