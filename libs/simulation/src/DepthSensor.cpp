@@ -75,7 +75,7 @@ public:
 		}
 	}
 
-	/** Of a pixel in range: whether nothing a pixel or more of disparity nearer stands in the light's way. */
+	/** Of a pixel in range: whether nothing nearer by a pixel of disparity stands in the light's way. */
 	bool sees(int x) const
 	{
 		const int column = int(2 * (float(x) - disparity_[x] + float(margin_)));
@@ -141,30 +141,12 @@ float lookUp(const cv::Mat& depth, float x, float y, float edge)
 	const float* nearer = t < 0.5F ? top : bottom;
 	return nearer[s < 0.5F ? x0 : x1];
 }
-}  // namespace
 
-void DepthSensorOptions::describe(OptionFields& f)
+/** z' = K / floor(K / z(x + nx, y + ny) + N(0, disparitySigma^2) + 0.5), nx, ny ~ N(0, lateralSigma^2),
+ *  with K = disparityScale f b the steps of disparity at one metre; each pixel's numbers are its own. */
+cv::Mat noisyDepth(const cv::Mat& depth, float steps, const DepthSensorOptions& o, uint64_t seed)
 {
-	f.flag("noise", noise, "false: the exact depth within the range");
-	f.number("minimum_range", minimumRange, 0.1, 100, "nearer is not measured [m]");
-	f.number("maximum_range", maximumRange, 0.1, 65.535, "farther is not measured [m]");
-	f.number("baseline", baseline, 0.001, 1, "from the camera to the projector on its right [m]");
-	f.number("disparity_scale", disparityScale, 1, 1024, "steps of disparity in a pixel");
-	f.number("disparity_sigma", disparitySigma, 0, 100, "noise of the disparity [steps]");
-	f.number("lateral_sigma", lateralSigma, 0, 4, "noise of the place in the image [px]");
-	f.number("edge", edge, 0, 10, "depth is never interpolated across a larger step [m]");
-	f.number("minimum_cosine", minimumCosine, 0, 1, "of the angle of incidence; less: no depth");
-}
-
-cv::Mat senseDepth(const RenderedView& view, const DepthSensorOptions& o, uint64_t seed)
-{
-	if (view.depth.empty()) return {};
-	requireView(view);
-	if (!o.noise) return exactDepth(view.depth, o);
-
-	const cv::Mat depth = measurableDepth(view, o);
 	const float right = float(depth.cols - 1), bottom = float(depth.rows - 1);
-	const auto steps = float(o.disparityScale * view.camera.fx() * o.baseline);
 	const auto sigma = float(o.disparitySigma), shift = float(o.lateralSigma);
 	const auto edge = float(o.edge);
 	const NormalTable& normal = normalTable();
@@ -187,6 +169,33 @@ cv::Mat senseDepth(const RenderedView& view, const DepthSensorOptions& o, uint64
 		}
 	}
 	return result;
+}
+}  // namespace
+
+void DepthSensorOptions::describe(OptionFields& f)
+{
+	f.flag("noise", noise, "false: the exact depth within the range");
+	f.number("minimum_range", minimumRange, 0.1, 100, "nearer is not measured [m]");
+	f.number("maximum_range", maximumRange, 0.1, 65.535, "farther is not measured [m]");
+	f.number("baseline", baseline, 0.001, 1, "from the camera to the projector on its right [m]");
+	f.number("disparity_scale", disparityScale, 1, 1024, "steps of disparity in a pixel");
+	f.number("disparity_sigma", disparitySigma, 0, 100, "noise of the disparity [steps]");
+	f.number("lateral_sigma", lateralSigma, 0, 4, "noise of the place in the image [px]");
+	f.number("edge", edge, 0, 10, "depth is never interpolated across a larger step [m]");
+	f.number("minimum_cosine", minimumCosine, 0, 1, "of the angle of incidence; less: no depth");
+}
+
+cv::Mat senseDepth(const RenderedView& view, const DepthSensorOptions& o, uint64_t seed)
+{
+	if (o.minimumRange > o.maximumRange)
+		throw UsageError(
+			"minimum_range = " + std::to_string(o.minimumRange) + ": not allowed; use at most " +
+			"maximum_range, " + std::to_string(o.maximumRange));
+	if (view.depth.empty()) return {};
+	requireView(view);
+	if (!o.noise) return exactDepth(view.depth, o);
+	const double steps = o.disparityScale * view.camera.fx() * o.baseline;
+	return noisyDepth(measurableDepth(view, o), float(steps), o, seed);
 }
 
 }  // namespace semloop

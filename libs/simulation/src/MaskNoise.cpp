@@ -13,21 +13,39 @@ namespace
 {
 constexpr double kCut = 3.0;  // [sigma]
 
-/** Smooth noise of variance 1 on average over a cell: blending four numbers with the weights
- *  3 t^2 - 2 t^3 of both axes leaves (26 / 35)^2 of their variance. */
-float smoothNoise(uint64_t key, float x, float y)
+/** Smooth noise of variance 1: blending four numbers with the weights 3 t^2 - 2 t^3 of both axes leaves
+ *  (26 / 35)^2 of their variance, on average over a cell. The key shifts the lattice, so that it is
+ *  the same average everywhere. */
+class SmoothNoise
 {
-	constexpr float kUnit = 35.0F / 26.0F;
-	const NormalTable& normal = normalTable();
-	const auto node = [&](int i, int j) { return normal(hashed(key, i, j)); };
-	const float fx = std::floor(x), fy = std::floor(y);
-	const int i = int(fx), j = int(fy);
-	const float s = x - fx, t = y - fy;
-	const float u = s * s * (3 - 2 * s), v = t * t * (3 - 2 * t);
-	const float a = node(i, j), b = node(i + 1, j), c = node(i, j + 1), d = node(i + 1, j + 1);
-	const float above = a + u * (b - a), below = c + u * (d - c);
-	return kUnit * (above + v * (below - above));
-}
+public:
+	SmoothNoise(double spacing, uint64_t key)
+		: frequency_(float(1 / spacing)),
+		  left_(float(uniformFrom(hashed(key, 0)))),
+		  top_(float(uniformFrom(hashed(key, 1)))),
+		  key_(hashed(key, 2))
+	{
+	}
+
+	float operator()(int column, int row) const
+	{
+		constexpr float kUnit = 35.0F / 26.0F;
+		const float x = float(column) * frequency_ + left_, y = float(row) * frequency_ + top_;
+		const int i = int(x), j = int(y);
+		const float s = x - float(i), t = y - float(j);
+		const float u = s * s * (3 - 2 * s), v = t * t * (3 - 2 * t);
+		const float a = node(i, j), b = node(i + 1, j), c = node(i, j + 1), d = node(i + 1, j + 1);
+		const float above = a + u * (b - a), below = c + u * (d - c);
+		return kUnit * (above + v * (below - above));
+	}
+
+private:
+	float node(int i, int j) const { return normal_(hashed(key_, i, j)); }
+
+	float frequency_, left_, top_;
+	uint64_t key_;
+	const NormalTable& normal_ = normalTable();
+};
 
 /** Distance of a pixel's middle to the outline, which runs between the pixels; outside negative. The
  *  image's border is no outline. */
@@ -61,18 +79,16 @@ MaskMargin noisyMargin(const InstanceMask& mask, double sigma, double spacing, u
 		return result;
 	}
 	result.margin = signedDistance(inside);
-	const auto frequency = float(1 / spacing);
+	const SmoothNoise noise(spacing, key);
 	for (int y = 0; y < result.box.height; y++)
 	{
 		auto* row = result.margin.ptr<float>(y);
 		for (int x = 0; x < result.box.width; x++)
-			if (std::abs(row[x]) < reach)
-			{
-				const float noise = float(sigma) * smoothNoise(
-													   key, float(result.box.x + x) * frequency,
-													   float(result.box.y + y) * frequency);
-				row[x] += std::clamp(noise, -reach, reach);
-			}
+		{
+			if (std::abs(row[x]) >= reach) continue;
+			const float shift = float(sigma) * noise(result.box.x + x, result.box.y + y);
+			row[x] += std::clamp(shift, -reach, reach);
+		}
 	}
 	return result;
 }

@@ -51,7 +51,7 @@ double normalQuantile(double p);
 
 /** Standard normal numbers from 21 bits, by a table, for noise of each pixel: the quantiles of
  *  multiples of 1/4096 and a straight line between. Mean 0; variance 1 and fourth moment 3 within 1 %;
- *  the distribution function is exact within 1e-6 up to 3.49 sigma; none lies beyond 4 sigma. */
+ *  the distribution function is exact within 2e-5 up to 3.49 sigma; none lies beyond 4 sigma. */
 class NormalTable
 {
 public:

@@ -10,7 +10,8 @@ namespace
 {
 void requireView(const RenderedView& view)
 {
-	if (!view.object.empty() && view.object.type() != CV_16UC1)
+	if (view.object.empty()) return;
+	if (view.object.type() != CV_16UC1)
 		throw InputError("view to detect in: its objects must be one channel of 16 bits");
 	if (view.object.cols != int(view.camera.ncols) || view.object.rows != int(view.camera.nrows))
 		throw InputError(
