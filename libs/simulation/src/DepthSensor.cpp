@@ -44,9 +44,9 @@ cv::Mat exactDepth(const cv::Mat& depth, const DepthSensorOptions& o)
 }
 
 /** Which pixels of an image row the projector sees. It stands b to the right of the camera and looks
- *  the same way: the point at column u and disparity d = f b / z lies at its column u - d. In the row of
- *  the projector, half a pixel wide each, the largest disparity is what the light reaches. A pixel
- *  covers up to the middle between it and a neighbour of the same surface, and else half a pixel. */
+ *  the same way: the point at column u and disparity d = f b / z lies at its column u - d. In each half
+ *  column of the projector, the light reaches the largest disparity. A pixel covers up to the middle
+ *  between it and a neighbour of the same surface, and else half a pixel. */
 class ProjectorRow
 {
 public:
@@ -142,8 +142,8 @@ float lookUp(const cv::Mat& depth, float x, float y, float edge)
 	return nearer[s < 0.5F ? x0 : x1];
 }
 
-/** z' = K / floor(K / z(x + nx, y + ny) + N(0, disparitySigma^2) + 0.5), nx, ny ~ N(0, lateralSigma^2),
- *  with K = disparityScale f b the steps of disparity at one metre; each pixel's numbers are its own. */
+/** The formula of DepthSensor.h, with K = `steps` of disparity at one metre; each pixel's random numbers
+ *  are its own. */
 cv::Mat noisyDepth(const cv::Mat& depth, float steps, const DepthSensorOptions& o, uint64_t seed)
 {
 	const float right = float(depth.cols - 1), bottom = float(depth.rows - 1);
