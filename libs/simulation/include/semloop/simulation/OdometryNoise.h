@@ -21,7 +21,10 @@ protected:
 };
 
 /** A trajectory as odometry would give it: the first pose is true, every relative motion is corrupted.
- *  Poses are T_world_camera of the optical frame, the world's z is up. Same seed, same result. */
+ *  Poses are T_world_camera of the optical frame, the world's z is up. A motion of length s [m] is
+ *  scaled, shifted by N(0, translation^2 s) along each axis and turned about the true vertical by
+ *  N(+-yawBias s, rotation^2 s), about each level axis by N(0, tilt^2 s): the error of the whole does
+ *  not depend on the number of poses. Same seed, same result. */
 Trajectory corruptTrajectory(
 	const Trajectory& truth, const OdometryNoiseOptions& options, uint64_t seed);
 
