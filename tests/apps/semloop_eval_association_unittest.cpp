@@ -75,7 +75,7 @@ TEST_F(SemloopEvalAssociation, RefusesATruthOfAnotherTimeOrWithoutTruth)
 
 TEST_F(SemloopEvalAssociation, ExitsWith2OnWrongUsage)
 {
-	expectError("association " + path("OUT"), 2, {"truth"});
+	expectError("association " + path("OUT"), 2, {"required"});
 	expectError(arguments_ + " --minimum-pixels -1", 2, {"--minimum-pixels"});
 }
 }  // namespace

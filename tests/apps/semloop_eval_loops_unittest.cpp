@@ -88,7 +88,7 @@ TEST_F(SemloopEvalLoops, NamesWhatIsMissingDamagedOrOfAnotherTime)
 
 TEST_F(SemloopEvalLoops, ExitsWith2OnWrongUsage)
 {
-	expectError("loops " + path("OUT/loops.jsonl"), 2, {"truth"});
+	expectError("loops " + path("OUT/loops.jsonl"), 2, {"required"});
 	for (const char* option : {"--common-objects", "--frames-apart", "--minimum-pixels"})
 		expectError(arguments_ + " " + option + " -1", 2, {option});
 }

@@ -125,7 +125,7 @@ TEST_F(SemloopEvalObjects, TakesAnotherTrajectoryAndRefusesOneOfAnotherTime)
 
 TEST_F(SemloopEvalObjects, ExitsWith2OnWrongUsage)
 {
-	expectError("objects " + path("OUT"), 2, {"truth"});
+	expectError("objects " + path("OUT"), 2, {"required"});
 	expectError(arguments_ + " --align sim3", 2, {"align"});
 	expectError(arguments_ + " --max-distance -1", 2, {"--max-distance"});
 	expectError(arguments_ + " --min-iou 2", 2, {"--min-iou"});
