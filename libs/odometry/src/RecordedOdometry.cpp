@@ -81,6 +81,12 @@ void RecordedOdometryOptions::describe(OptionFields& f)
 		"sigma_rotation_floor_deg", sigmaRotationFloor, 1e-4, 180,
 		"standard deviation of a step's rotation, at least [deg]");
 	f.number(
+		"sigma_translation_walk", translationWalk, 0, 10,
+		"standard deviation after a metre of path, growing with its root [m]");
+	f.degrees(
+		"sigma_rotation_walk_deg", rotationWalk, 0, 180,
+		"same, of the rotation after a metre of path [deg]");
+	f.number(
 		"lost_sigma_translation", lostSigmaTranslation, 1e-4, 100,
 		"standard deviation added by each lost frame [m]");
 	f.degrees("lost_sigma_rotation_deg", lostSigmaRotation, 1e-2, 180, "same, rotation [deg]");
@@ -183,11 +189,11 @@ RecordedOdometry::Matrix6 RecordedOdometry::stepCovariance(
 	const double translation =
 		square(T_previous_camera.norm() * options_.sigmaTranslationPerMetre) +
 		square(options_.sigmaTranslationFloor) + square(options_.drift) * share +
-		2 * square(options_.noise);
+		square(options_.translationWalk) * T_previous_camera.norm() + 2 * square(options_.noise);
 	const double rotation =
 		square(rotationAngle(T_previous_camera) * options_.sigmaRotationPerRadian) +
 		square(options_.sigmaRotationFloor) + square(options_.driftYaw) * share +
-		2 * square(options_.noiseAngle);
+		square(options_.rotationWalk) * T_previous_camera.norm() + 2 * square(options_.noiseAngle);
 	return diagonalCovariance(std::sqrt(translation), std::sqrt(rotation));
 }
 

@@ -25,6 +25,8 @@ struct RecordedOdometryOptions : Options
 	double sigmaRotationPerRadian = 0.02;
 	double sigmaTranslationFloor = 0.001;             //!< [m]
 	double sigmaRotationFloor = mrpt::DEG2RAD(0.05);  //!< [rad]
+	double translationWalk = 0;                       //!< [m / sqrt(m)]
+	double rotationWalk = 0;                          //!< [rad / sqrt(m)]
 	double lostSigmaTranslation = 0.05;               //!< [m]
 	double lostSigmaRotation = mrpt::DEG2RAD(5.0);    //!< [rad]
 
@@ -53,8 +55,9 @@ protected:
  *  anew from N(0, s_t^2) and N(0, s_r^2): a localisation noise that does not add up. A step has that of
  *  two poses: 2 s_t^2 and 2 s_r^2 more covariance.
  *
- *  Covariance of a step of length l and angle r: (l sigma_per_metre)^2 + (r sigma_per_radian)^2 + floor^2
- *  of translation and rotation. */
+ *  Covariance of a step of length l and angle r: (l sigma_per_metre)^2 + floor^2 + l walk^2 of the
+ *  translation, (r sigma_per_radian)^2 + floor^2 + l walk^2 of the rotation. The walk is what a drift
+ *  amounts to whatever the frame rate: its sum over a path of length L is L walk^2. */
 class RecordedOdometry : public Odometry
 {
 	DEFINE_MRPT_OBJECT(RecordedOdometry, semloop)
