@@ -90,7 +90,8 @@ struct FramesAhead : std::deque<std::future<SimulatedFrame>>
 {
 	~FramesAhead()
 	{
-		for (auto& frame : *this) frame.wait();
+		for (auto& frame : *this)
+			if (frame.valid()) frame.wait();
 	}
 };
 
