@@ -6,6 +6,9 @@
 #include <vector>
 
 #include "Application.h"
+#include "AssociationCommand.h"
+#include "LoopsCommand.h"
+#include "ObjectsCommand.h"
 #include "TrajectoryCommand.h"
 
 namespace
@@ -20,7 +23,10 @@ struct Command
 const std::vector<Command>& commands()
 {
 	static const std::vector<Command> all{
-		{"trajectory", "absolute and relative error of a trajectory", semloop::trajectoryCommand}};
+		{"trajectory", "absolute and relative error of a trajectory", semloop::trajectoryCommand},
+		{"association", "which object the detections went into", semloop::associationCommand},
+		{"loops", "true and false loop detections", semloop::loopsCommand},
+		{"objects", "the objects, their places and surfaces", semloop::objectsCommand}};
 	return all;
 }
 

@@ -1,65 +1,10 @@
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
-#include <sys/wait.h>
-
-#include <algorithm>
-#include <array>
-#include <cstdlib>
-#include <nlohmann/json.hpp>
-#include <sstream>
-#include <string>
-
-#include "TemporaryFolder.h"
+#include "SemloopEvalFixture.h"
 
 namespace semloop
 {
 namespace
 {
 using ::testing::HasSubstr;
-
-struct Outcome
-{
-	int exitCode = -1;
-	std::string output;
-	std::string errors;
-};
-
-class SemloopEval : public ::testing::Test
-{
-protected:
-	std::string path(const std::string& name) const { return folder_.file(name); }
-
-	std::string write(const std::string& name, const std::string& content) const
-	{
-		return folder_.write(name, content);
-	}
-
-	Outcome run(const std::string& arguments) const
-	{
-		const std::string command = SEMLOOP_BINARY_DIR "/bin/semloop-eval " + arguments + " >" +
-									path("stdout") + " 2>" + path("stderr");
-		const int status = std::system(command.c_str());
-		return {
-			WIFEXITED(status) ? WEXITSTATUS(status) : -1, readBytes(path("stdout")),
-			readBytes(path("stderr"))};
-	}
-
-private:
-	TemporaryFolder folder_;
-};
-
-/** Four corners of a unit square, a second apart, lifted by z and shifted by dx. */
-std::string square(double dx, double z)
-{
-	const std::array<std::array<double, 2>, 4> corners{{{0, 0}, {1, 0}, {1, 1}, {0, 1}}};
-	std::ostringstream out;
-	out << "# t tx ty tz qx qy qz qw\n";
-	for (std::size_t i = 0; i < corners.size(); i++)
-		out << 100 + i << " " << corners[i][0] + dx << " " << corners[i][1] << " " << z
-			<< " 0 0 0 1\n";
-	return out.str();
-}
 
 TEST_F(SemloopEval, FindsNoErrorInAShiftedCopyAfterAlignment)
 {
@@ -143,7 +88,8 @@ TEST_F(SemloopEval, ExplainsItself)
 {
 	const auto overview = run("--help");
 	EXPECT_EQ(overview.exitCode, 0);
-	EXPECT_THAT(overview.output, HasSubstr("trajectory"));
+	for (const char* name : {"trajectory", "association", "loops", "objects"})
+		EXPECT_THAT(overview.output, HasSubstr(std::string("  ") + name + " "));
 	const auto command = run("trajectory --help");
 	EXPECT_EQ(command.exitCode, 0);
 	EXPECT_THAT(command.output, HasSubstr("--align"));

@@ -53,7 +53,8 @@ TEST(SemanticGraphFile, LoadsEveryField)
 {
 	const auto graph = loadText(documentOf(
 		R"({"id": 3, "label": "chair", "position": [1, -2.5, 3], "label_scores": {"chair": 0.9,
-			"couch": 0.1}, "embedding": [0.6, 0.8], "extent": [0.5, 0.4, 1], "observations": 41},)" +
+			"couch": 0.1}, "embedding": [0.6, 0.8], "extent": [0.5, 0.4, 1], "orientation": [0, 0, 0.6, 0.8],
+			"observations": 41},)" +
 			std::string(kChair),
 		"[7, 3]"));
 	ASSERT_EQ(graph.vertices.size(), 2);
@@ -65,6 +66,8 @@ TEST(SemanticGraphFile, LoadsEveryField)
 	EXPECT_EQ(chair.embeddings, (std::vector<std::vector<float>>{{0.6f, 0.8f}}));
 	EXPECT_EQ(chair.extent->z, 1);
 	EXPECT_EQ(chair.observations, 41);
+	EXPECT_EQ(chair.orientation, mrpt::math::CQuaternionDouble(0.8, 0, 0, 0.6));
+	EXPECT_FALSE(graph.vertices[1].orientation);
 	EXPECT_FALSE(graph.vertices[1].extent);
 	EXPECT_TRUE(graph.hasEdge(0, 1));
 }
@@ -82,6 +85,7 @@ TEST(SemanticGraphFile, SavingAndLoadingKeepsEverythingAndTheBytes)
 	graph.vertices[0].embeddings = {{0.6f, -0.8f}};
 	graph.vertices[0].labelScores = {{"cup \"A\"", 0.75}, {"bowl", 0.25}};
 	graph.vertices[1].extent.emplace(0.5, 0.5, 1);
+	graph.vertices[1].orientation.emplace(std::sqrt(0.5), 0, 0, -std::sqrt(0.5));
 	graph.vertices[1].observations = 3;
 	const TemporaryFolder folder;
 	graph.save(folder.file("a.json"));
@@ -93,6 +97,7 @@ TEST(SemanticGraphFile, SavingAndLoadingKeepsEverythingAndTheBytes)
 	EXPECT_EQ(loaded.vertices[0].id, 4) << "objects are in the order of their ids";
 	EXPECT_EQ(loaded.vertices[0].observations, 3);
 	EXPECT_EQ(loaded.vertices[0].extent->z, 1);
+	EXPECT_NEAR(loaded.vertices[0].orientation->z(), -std::sqrt(0.5), 1e-6);
 	EXPECT_EQ(loaded.vertices[1].label, "cup \"A\"");
 	EXPECT_EQ(loaded.vertices[1].embeddings, graph.vertices[0].embeddings);
 	EXPECT_EQ(loaded.vertices[1].labelScores, graph.vertices[0].labelScores);
@@ -222,6 +227,16 @@ INSTANTIATE_TEST_SUITE_P(
 			documentOf(R"({"id": 1, "label": "cup", "position": [1, 2, 3], "extent": [1, -1, 1]})"),
 			"objects[0].extent", "negative"},
 		BadFile{
+			"ShortOrientation",
+			documentOf(
+				R"({"id": 1, "label": "cup", "position": [1, 2, 3], "orientation": [0, 0, 1]})"),
+			"objects[0].orientation", "4 numbers"},
+		BadFile{
+			"LongOrientation",
+			documentOf(
+				R"({"id": 1, "label": "cup", "position": [1, 2, 3], "orientation": [0, 0, 3, 4]})"),
+			"objects[0].orientation", "length is 5"},
+		BadFile{
 			"EdgeToUnknown", documentOf(std::string(kCup) + "," + kChair, "[1, 7], [1, 8]"),
 			"edges[1][1]", "no object has the id 8"},
 		BadFile{"EdgeToItself", documentOf(kCup, "[1, 1]"), "edges[0]", "object 1 to itself"},
@@ -268,6 +283,7 @@ TEST_F(SemanticGraphFromMap, HasAVertexPerObjectAndAnEdgePerCovisiblePair)
 	EXPECT_EQ(graph.vertices[0].position, map.object(ids[0]).centre());
 	EXPECT_NEAR(graph.distance(0, 1), 0.5, 0.05);
 	EXPECT_GT(graph.vertices[0].extent->y, 0.1);
+	EXPECT_EQ(graph.vertices[0].orientation, mrpt::math::CQuaternionDouble(1, 0, 0, 0));
 }
 
 TEST_F(SemanticGraphFromMap, TakesOnlyTheSubsetAndTheEdgesInsideIt)

@@ -27,7 +27,7 @@ TEST(SemanticLoopDetector, AcceptsADriftedCopy)
 	EXPECT_EQ(verdict.decision, Decision::Accepted) << verdict.reason;
 	EXPECT_LT(verdict.T_target_query.distanceTo(T), 1e-6);
 	EXPECT_EQ(verdict.queryObjects, 10);
-	EXPECT_EQ(verdict.candidateMatches, 10);
+	EXPECT_EQ(verdict.candidates.size(), 10);
 	EXPECT_EQ(verdict.matches.size(), 10);
 	for (const auto& [query, targetId] : verdict.matches) EXPECT_EQ(query, targetId);
 	EXPECT_DOUBLE_EQ(verdict.matchedEdgeShare, 1);
@@ -231,7 +231,7 @@ TEST_F(SemanticLoopDetectorOnAMap, AnObjectThatTheSurfacesOfTheOthersRefuteIsNoM
 	const auto moved = mapScene(drift, 0.45);
 	const auto verdict = makeDetector().detect(map, moved, target);
 	ASSERT_EQ(verdict.decision, Decision::Accepted) << verdict.reason;
-	EXPECT_EQ(verdict.candidateMatches, kObjects);
+	EXPECT_EQ(verdict.candidates.size(), kObjects);
 	ASSERT_EQ(verdict.matches.size(), kObjects - 1U);
 	EXPECT_EQ(verdict.alignments.size(), kObjects - 1U);
 	for (const auto& match : verdict.matches) EXPECT_NE(match.first, *moved.rbegin());

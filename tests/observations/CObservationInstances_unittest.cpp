@@ -165,6 +165,33 @@ TEST(CObservationInstances, AnInstanceNeedsNeitherEmbeddingNorDepth)
 	EXPECT_FALSE(read->instances[0].depth.has_value());
 }
 
+TEST(CObservationInstances, KeepsTheTrueObjectOfThoseThatHaveOne)
+{
+	auto o = example(3);
+	o.instances[0].trueObject = 0;
+	o.instances[2].trueObject = 4'000'000'000u;
+	const auto read = fromBytes(bytesOf(o));
+	EXPECT_EQ(read->instances[0].trueObject, std::optional<uint32_t>(0));
+	EXPECT_FALSE(read->instances[1].trueObject.has_value());
+	EXPECT_EQ(read->instances[2].trueObject, std::optional<uint32_t>(4'000'000'000u));
+}
+
+TEST(CObservationInstances, VersionZeroIsReadAsWithoutTrueObjects)
+{
+	// Version 1 ends with a flag for each instance; the object itself ends with a mark of one byte.
+	auto bytes = bytesOf(example(1));
+	const std::string name = "semloop::CObservationInstances";
+	const std::size_t version = bytes.find(name) + name.size();
+	ASSERT_EQ(bytes[version], 1);
+	bytes[version] = 0;
+	bytes.erase(bytes.size() - 2, 1);
+	const auto read = fromBytes(bytes);
+	ASSERT_TRUE(read);
+	ASSERT_EQ(read->instances.size(), 1u);
+	EXPECT_EQ(read->instances[0].mask, example(1).instances[0].mask);
+	EXPECT_FALSE(read->instances[0].trueObject.has_value());
+}
+
 TEST(CObservationInstances, IsKnownToMrptsClassRegistry)
 {
 	const auto made = mrpt::rtti::classFactory("semloop::CObservationInstances");
@@ -246,6 +273,16 @@ TEST(CObservationInstances, DescribesItselfAfterWhatEveryObservationSays)
 	o.mrpt::obs::CObservation::getDescriptionAsText(base);
 	EXPECT_EQ(text.str().find(base.str()), 0u);
 	EXPECT_NE(text.str().find("chair"), std::string::npos);
+	EXPECT_EQ(text.str().find("truly"), std::string::npos);
+}
+
+TEST(CObservationInstances, DescribesTheTrueObjectWhereThereIsOne)
+{
+	auto o = example(1);
+	o.instances[0].trueObject = 17;
+	std::ostringstream text;
+	o.getDescriptionAsText(text);
+	EXPECT_NE(text.str().find("truly object 17"), std::string::npos);
 }
 
 TEST(CObservationInstances, ExportsOneRowOfText)

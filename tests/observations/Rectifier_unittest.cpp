@@ -57,6 +57,7 @@ Instance instanceOf(const cv::Mat& mask)
 	instance.labelScores = {{0, 0.5f}};
 	instance.confidence = 0.5f;
 	instance.embedding = {1, 0};
+	instance.trueObject = 5;
 	return instance;
 }
 
@@ -207,6 +208,7 @@ TEST(Rectifier, KeepsWhatHasNothingToDoWithPixels)
 	EXPECT_EQ(out->sensorLabel, in.sensorLabel);
 	EXPECT_EQ(out->labels, in.labels);
 	EXPECT_EQ(out->instances[0].embedding, in.instances[0].embedding);
+	EXPECT_EQ(out->instances[0].trueObject, in.instances[0].trueObject);
 	EXPECT_EQ(out->instances[0].labelScores, in.instances[0].labelScores);
 	EXPECT_EQ(out->instances[0].confidence, in.instances[0].confidence);
 }

@@ -40,6 +40,17 @@ TEST(LocalMap, CountsTurningAsPath)
 	EXPECT_NEAR(map.path(), 0.5, 1e-12);
 }
 
+TEST(LocalMap, IsOfTheFramesOfItsLengthOfPath)
+{
+	LocalMap map = twoMetreMap();
+	EXPECT_EQ(map.firstFrame(), 0u);
+	map.advance(CPose3D());  // frame 0
+	for (int frame = 1; frame <= 2; ++frame) map.advance(oneMetre);
+	EXPECT_EQ(map.firstFrame(), 0u) << "exactly two metres back";
+	map.advance(oneMetre);
+	EXPECT_EQ(map.firstFrame(), 1u);
+}
+
 TEST(LocalMap, AnObjectThatStaysInViewStays)
 {
 	LocalMap map = twoMetreMap();

@@ -1,10 +1,15 @@
 #include <gtest/gtest.h>
 #include <semloop/config/Error.h>
+#include <semloop/evaluation/AssociationAccuracy.h>
+#include <semloop/evaluation/LoopEvaluation.h>
 #include <semloop/evaluation/TrajectoryError.h>
 #include <semloop/slam/Configuration.h>
 #include <semloop/slam/RunResults.h>
 
+#include <algorithm>
+#include <map>
 #include <nlohmann/json.hpp>
+#include <set>
 
 #include "SyntheticRun.h"
 
@@ -45,7 +50,7 @@ std::string fingerprint(const SemanticSlam& slam, const TemporaryFolder& folder)
 	writeTumTrajectory(folder.file("t.tum"), slam.trajectory());
 	SemanticGraph::fromMap(slam.map()).save(folder.file("g.json"));
 	return readBytes(folder.file("t.tum")) + readBytes(folder.file("g.json")) +
-		   loopsAsJsonLines(slam.loops());
+		   loopsAsJsonLines(slam.loops()) + associationsAsCsv(slam.associations());
 }
 }  // namespace
 
@@ -99,6 +104,58 @@ TEST(SemanticSlam, ALoopClosureTakesOutMostOfTheDrift)
 	EXPECT_LT(after, 0.5 * before);
 }
 
+TEST(SemanticSlam, AssociationsFollowTheMergesOfALoopClosure)
+{
+	const TemporaryFolder folder;
+	const RecordedRun recorded = recordRun(folder);
+	const auto run = mapRawlog(recorded.rawlog, runConfiguration(recorded, 0.8), 2);
+	const auto associations = run->slam->associations();
+	std::map<ObjectId, std::set<ObjectId>> origins;
+	std::size_t previous = 0;
+	for (const auto& a : associations)
+	{
+		EXPECT_GE(a.frame, previous);
+		previous = a.frame;
+		EXPECT_EQ(a.time, frameTime(int(a.frame)));
+		EXPECT_GT(a.box.area(), 0);
+		origins[a.object].insert(a.firstObject);
+	}
+	const auto& objects = run->slam->map().objects();
+	for (const auto& entry : objects) EXPECT_EQ(origins.count(entry.first), 1u) << entry.first;
+	for (const auto& [id, firsts] : origins)
+		for (const auto first : firsts)
+			EXPECT_TRUE(first == id || objects.count(first) == 0) << "absorbed, but still there";
+	const auto merged = [](const auto& entry) { return entry.second.size() > 1; };
+	EXPECT_GE(std::count_if(origins.begin(), origins.end(), merged), 3);
+}
+
+TEST(SemanticSlam, WhatItWritesIsWhatTheEvaluationReads)
+{
+	const TemporaryFolder folder;
+	const RecordedRun recorded = recordRun(folder);
+	const auto run = mapRawlog(recorded.rawlog, runConfiguration(recorded, 0.8), 2);
+	writeRunResults(folder.path().string(), *run->slam, RunInfo(), run->timings);
+
+	const auto frames = joinWithTruth(
+		readTumTrajectory(folder.file("trajectory.tum")),
+		readAssociations(folder.file("associations.csv")), readTrueFrames(recorded.rawlog));
+	EXPECT_EQ(frames.size(), std::size_t(recorded.frames));
+	const auto accuracy = associationAccuracy(frames);
+	EXPECT_EQ(accuracy.detectedBoxes, run->slam->associations().size());
+	EXPECT_GT(*accuracy.accuracyOfDetected, 0.9);
+
+	const auto attempts = readLoopAttempts(folder.file("loops.jsonl"));
+	ASSERT_EQ(attempts.size(), run->slam->loops().size());
+	LoopRule rule;
+	rule.framesApart = 50;   // of 72 in a round
+	rule.commonObjects = 1;  // few frames see three
+	const auto loops = evaluateLoops(attempts, frames, rule);
+	EXPECT_GE(loops.verified.truePositives, 1u);
+	EXPECT_EQ(loops.verified.falsePositives, 0u);
+	EXPECT_GE(loops.detected.detections, loops.verified.detections);
+	EXPECT_GT(*loops.recall, 0);
+}
+
 TEST(SemanticSlam, NoLoopIsClosedWhereNoneIs)
 {
 	const TemporaryFolder folder;
@@ -136,8 +193,8 @@ TEST(SemanticSlam, EveryFileOfARunIsWritten)
 	writeRunResults(folder.path().string(), *run->slam, RunInfo(), run->timings);
 	for (const char* name :
 		 {"trajectory.tum", "trajectory_odometry.tum", "objects.json", "map.objmap",
-		  "map.simplemap", "scene.3Dscene", "pose_graph.g2o", "loops.jsonl", "timings.csv",
-		  "summary.json"})
+		  "map.simplemap", "scene.3Dscene", "pose_graph.g2o", "loops.jsonl", "associations.csv",
+		  "timings.csv", "summary.json"})
 		EXPECT_FALSE(readBytes(folder.file(name)).empty()) << name;
 	EXPECT_FALSE(std::filesystem::is_empty(folder.path() / "objects"));
 	const auto summary = nlohmann::json::parse(readBytes(folder.file("summary.json")));

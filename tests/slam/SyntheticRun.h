@@ -98,8 +98,11 @@ inline CObservationInstances instancesOf(const View& view, int index)
 	instances.labels = roomLabels();
 	for (int id = 1; id < int(view.masks.size()); ++id)
 		if (view.masks[std::size_t(id)].area() > 40)
+		{
 			instances.instances.push_back(
 				makeInstance(view.masks[std::size_t(id)], labelOf(id), 0.9f));
+			instances.instances.back().trueObject = uint32_t(id);
+		}
 	return instances;
 }
 

@@ -16,6 +16,7 @@ GraphVertex vertexOf(const CObjectMap& map, const Object& object)
 		vertex.labelScores[map.labels().name(label)] = score;
 	vertex.embeddings = object.embeddings;
 	vertex.extent = object.extent();
+	object.T_world_object.getAsQuaternion(vertex.orientation.emplace());
 	vertex.observations = object.observations;
 	return vertex;
 }

@@ -13,6 +13,7 @@ using nlohmann::json;
 
 constexpr const char* kFormat = "semloop.graph/1";
 constexpr double kUnitLengthTolerance = 0.01;  // files are rounded to a few digits
+constexpr double kQuaternionTolerance = 4e-4;  // MRPT refuses more
 
 /** A value of the document and where it stands, so that every error can name its place. */
 class Node
@@ -96,6 +97,17 @@ std::vector<float> parseEmbedding(const Node& node)
 	return embedding;
 }
 
+mrpt::math::CQuaternionDouble parseQuaternion(const Node& node)
+{
+	if (node.arraySize() != 4) node.fail("must have 4 numbers, qx, qy, qz, qw");
+	const double x = node.at(0).number(), y = node.at(1).number(), z = node.at(2).number(),
+				 w = node.at(3).number();
+	const double length = std::hypot(std::hypot(x, y, z), w);
+	if (std::abs(length - 1.0) > kQuaternionTolerance)
+		node.fail("length is " + std::to_string(length) + ", must be 1: normalise it");
+	return {w, x, y, z};
+}
+
 std::map<std::string, double> parseScores(const Node& node)
 {
 	if (!node.value().is_object()) node.fail("must be an object {label: score}");
@@ -124,6 +136,7 @@ GraphVertex parseVertex(const Node& node)
 			node.at("extent").fail("must not be negative");
 		vertex.extent.emplace(extent.x, extent.y, extent.z);
 	}
+	if (node.has("orientation")) vertex.orientation = parseQuaternion(node.at("orientation"));
 	if (node.has("observations"))
 	{
 		const uint64_t count = node.at("observations").index();
@@ -234,6 +247,8 @@ nlohmann::ordered_json toJson(const GraphVertex& vertex, const std::string& path
 	for (const float value : meanEmbedding(vertex)) object["embedding"].push_back(number(value));
 	if (const auto& e = vertex.extent)
 		object["extent"] = {number(e->x), number(e->y), number(e->z)};
+	if (const auto& q = vertex.orientation)
+		object["orientation"] = {number(q->x()), number(q->y()), number(q->z()), number(q->r())};
 	if (vertex.observations > 0) object["observations"] = vertex.observations;
 	return object;
 }

@@ -113,7 +113,8 @@ LoopVerdict SemanticLoopDetector::detect(
 
 	// Sec. III-C, Eq. (4)-(6)
 	const auto matching = matcher_->match(query, target);
-	verdict.candidateMatches = matching.matches.size();
+	for (const auto& [j, k] : matching.matches)
+		verdict.candidates.emplace_back(query.vertices[j].id, target.vertices[k].id);
 	verdict.matchingScore = matching.score;
 
 	// Sec. IV-B: a loop needs half of the query's edges
@@ -126,6 +127,7 @@ LoopVerdict SemanticLoopDetector::detect(
 				"only %.0f %% of the %zu edges matched, needed are %.0f %%",
 				100 * verdict.matchedEdgeShare, query.edges.size(), 100 * options.minEdgeShare));
 
+	verdict.graphsMatch = true;
 	const auto check = verifyGeometry(query, target, matching.matches, options.verification);
 	for (const auto& [j, k] : check.inliers)
 		verdict.matches.emplace_back(query.vertices[j].id, target.vertices[k].id);

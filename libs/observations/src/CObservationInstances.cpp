@@ -91,7 +91,7 @@ void CObservationInstances::validate() const
 
 uint8_t CObservationInstances::serializeGetVersion() const
 {
-	return 0;
+	return 1;
 }
 
 void CObservationInstances::serializeTo(mrpt::serialization::CArchive& out) const
@@ -104,11 +104,11 @@ void CObservationInstances::serializeTo(mrpt::serialization::CArchive& out) cons
 
 void CObservationInstances::serializeFrom(mrpt::serialization::CArchive& in, uint8_t version)
 {
-	if (version != 0) MRPT_THROW_UNKNOWN_SERIALIZATION_VERSION(version);
+	if (version > 1) MRPT_THROW_UNKNOWN_SERIALIZATION_VERSION(version);
 
 	in >> timestamp >> sensorLabel >> camera >> sensorPose;
 	labels = readLabels(in);
-	instances = readInstances(in, imageSize());
+	instances = readInstances(in, imageSize(), version);
 	validate();
 }
 
@@ -126,7 +126,9 @@ void CObservationInstances::getDescriptionAsText(std::ostream& o) const
 		  << instance.labelScores.front().score << ", confidence " << instance.confidence
 		  << ", box " << text(instance.box.size()) << " at (" << instance.box.x << ", "
 		  << instance.box.y << "), " << instance.mask.area() << " pixels, embedding of "
-		  << instance.embedding.size() << (instance.depth ? ", with depth" : "") << "\n";
+		  << instance.embedding.size() << (instance.depth ? ", with depth" : "");
+		if (instance.trueObject) o << ", truly object " << *instance.trueObject;
+		o << "\n";
 	}
 }
 

@@ -93,6 +93,18 @@ std::optional<DepthCrop> readDepth(CArchive& in, cv::Size size)
 	return crop;
 }
 
+void writeTrueObject(CArchive& out, const std::optional<uint32_t>& trueObject)
+{
+	out << trueObject.has_value();
+	if (trueObject) out << *trueObject;
+}
+
+std::optional<uint32_t> readTrueObject(CArchive& in)
+{
+	if (!in.ReadAs<bool>()) return std::nullopt;
+	return in.ReadAs<uint32_t>();
+}
+
 void writeInstance(CArchive& out, const Instance& instance)
 {
 	for (const int side : {instance.box.x, instance.box.y, instance.box.width, instance.box.height})
@@ -103,9 +115,10 @@ void writeInstance(CArchive& out, const Instance& instance)
 	writeEmbedding(out, instance.embedding);
 	writeMask(out, instance.mask);
 	writeDepth(out, instance.depth);
+	writeTrueObject(out, instance.trueObject);
 }
 
-Instance readInstance(CArchive& in, cv::Size imageSize)
+Instance readInstance(CArchive& in, cv::Size imageSize, uint8_t version)
 {
 	Instance instance;
 	for (int* const side :
@@ -117,6 +130,7 @@ Instance readInstance(CArchive& in, cv::Size imageSize)
 	instance.embedding = readEmbedding(in);
 	instance.mask = readMask(in, imageSize);
 	instance.depth = readDepth(in, instance.box.size());
+	if (version >= 1) instance.trueObject = readTrueObject(in);
 	return instance;
 }
 
@@ -145,11 +159,11 @@ void writeInstances(CArchive& out, const std::vector<Instance>& instances)
 	for (const auto& instance : instances) writeInstance(out, instance);
 }
 
-std::vector<Instance> readInstances(CArchive& in, cv::Size imageSize)
+std::vector<Instance> readInstances(CArchive& in, cv::Size imageSize, uint8_t version)
 {
 	std::vector<Instance> instances;
 	const uint32_t count = readCount(in, kMostInstances, "instances");
-	for (uint32_t i = 0; i < count; i++) instances.push_back(readInstance(in, imageSize));
+	for (uint32_t i = 0; i < count; i++) instances.push_back(readInstance(in, imageSize, version));
 	return instances;
 }
 

@@ -202,6 +202,7 @@ std::optional<Instance> Rectifier::rectify(const Instance& instance) const
 	out.labelScores = instance.labelScores;
 	out.confidence = instance.confidence;
 	out.embedding = instance.embedding;
+	out.trueObject = instance.trueObject;
 	if (instance.depth)
 		out.depth = DepthCrop{
 			warp<uint16_t>(instance.depth->depth, instance.box, nearest_, out.box),

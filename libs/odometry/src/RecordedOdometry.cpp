@@ -10,6 +10,7 @@
 #include <cmath>
 
 #include "PoseAlgebra.h"
+#include "PoseNoise.h"
 
 IMPLEMENTS_MRPT_OBJECT(RecordedOdometry, Odometry, semloop)
 
@@ -61,6 +62,13 @@ void RecordedOdometryOptions::describe(OptionFields& f)
 	f.degrees(
 		"drift_yaw_deg", driftYaw, -180, 180, "experiment: same, about the first camera's y [deg]");
 	f.number(
+		"noise", noise, 0, 1e3,
+		"experiment: standard deviation of each frame's position, an axis, independent [m]");
+	f.degrees(
+		"noise_deg", noiseAngle, 0, 180,
+		"experiment: same, of the components of a rotation vector [deg]");
+	f.integer("noise_seed", noiseSeed, 0, 2147483647, "experiment: of the noise's random numbers");
+	f.number(
 		"sigma_translation_per_metre", sigmaTranslationPerMetre, 0, 10,
 		"standard deviation of a step's translation, a metre of its length");
 	f.number(
@@ -73,12 +81,19 @@ void RecordedOdometryOptions::describe(OptionFields& f)
 		"sigma_rotation_floor_deg", sigmaRotationFloor, 1e-4, 180,
 		"standard deviation of a step's rotation, at least [deg]");
 	f.number(
+		"sigma_translation_walk", translationWalk, 0, 10,
+		"standard deviation after a metre of path, growing with its root [m]");
+	f.degrees(
+		"sigma_rotation_walk_deg", rotationWalk, 0, 180,
+		"same, of the rotation after a metre of path [deg]");
+	f.number(
 		"lost_sigma_translation", lostSigmaTranslation, 1e-4, 100,
 		"standard deviation added by each lost frame [m]");
 	f.degrees("lost_sigma_rotation_deg", lostSigmaRotation, 1e-2, 180, "same, rotation [deg]");
 }
 
-RecordedOdometry::RecordedOdometry(const RecordedOdometryOptions& options) : options_(options)
+RecordedOdometry::RecordedOdometry(const RecordedOdometryOptions& options)
+	: options_(options), random_(uint64_t(options.noiseSeed))
 {
 	if (options_.file.empty())
 	{
@@ -173,10 +188,12 @@ RecordedOdometry::Matrix6 RecordedOdometry::stepCovariance(
 		previousTime_ ? std::max(0.0, progress(time) - progress(*previousTime_)) : 0.0;
 	const double translation =
 		square(T_previous_camera.norm() * options_.sigmaTranslationPerMetre) +
-		square(options_.sigmaTranslationFloor) + square(options_.drift) * share;
+		square(options_.sigmaTranslationFloor) + square(options_.drift) * share +
+		square(options_.translationWalk) * T_previous_camera.norm() + 2 * square(options_.noise);
 	const double rotation =
 		square(rotationAngle(T_previous_camera) * options_.sigmaRotationPerRadian) +
-		square(options_.sigmaRotationFloor) + square(options_.driftYaw) * share;
+		square(options_.sigmaRotationFloor) + square(options_.driftYaw) * share +
+		square(options_.rotationWalk) * T_previous_camera.norm() + 2 * square(options_.noiseAngle);
 	return diagonalCovariance(std::sqrt(translation), std::sqrt(rotation));
 }
 
@@ -192,6 +209,9 @@ OdometryEstimate RecordedOdometry::track(const RgbdFrame& frame)
 		// Frames without a pose may have come first; the model then stood still at the origin.
 		if (!anchored) T_odom_record_ = orthonormalized(T_odom_previous_ + (-*T_record_camera));
 		estimate.T_odom_camera = drifted(*T_odom_record_ + *T_record_camera, frame.time);
+		if (anchored && (options_.noise > 0 || options_.noiseAngle > 0))
+			estimate.T_odom_camera =
+				withNoise(estimate.T_odom_camera, options_.noise, options_.noiseAngle, random_);
 		estimate.T_previous_camera = orthonormalized(estimate.T_odom_camera - T_odom_previous_);
 	}
 	else

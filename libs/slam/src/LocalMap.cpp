@@ -18,12 +18,20 @@ void LocalMap::advance(const mrpt::poses::CPose3D& T_previous_camera)
 {
 	const double angle = mrpt::poses::Lie::SO<3>::log(T_previous_camera.getRotationMatrix()).norm();
 	path_ += T_previous_camera.norm() + options_.metresPerRadian * angle;
+	pathAtFrame_.push_back(path_);
 }
 
 bool LocalMap::contains(ObjectId id) const
 {
 	const auto it = lastSeen_.find(id);
 	return it != lastSeen_.end() && path_ - it->second <= options_.length;
+}
+
+std::size_t LocalMap::firstFrame() const
+{
+	const auto isOld = [&](double path, double now) { return now - path > options_.length; };
+	const auto first = std::lower_bound(pathAtFrame_.begin(), pathAtFrame_.end(), path_, isOld);
+	return std::size_t(first - pathAtFrame_.begin());
 }
 
 std::set<ObjectId> LocalMap::objects() const

@@ -13,6 +13,7 @@ nlohmann::ordered_json toJson(const LoopRecord& record)
 	nlohmann::ordered_json line;
 	line["frame"] = record.frame;
 	line["time"] = mrpt::Clock::toDouble(record.time);
+	line["local_map_since"] = record.localMapSince;
 	line["decision"] = toString(v.decision);
 	line["reason"] = v.reason;
 	line["matches"] = v.matches;
@@ -33,7 +34,8 @@ nlohmann::ordered_json toJson(const LoopRecord& record)
 	else
 		line["T_target_query"] = nullptr;
 	line["query_objects"] = v.queryObjects;
-	line["candidate_matches"] = v.candidateMatches;
+	line["candidates"] = v.candidates;
+	line["graphs_match"] = v.graphsMatch;
 	line["matched_edge_share"] = v.matchedEdgeShare;
 	line["matching_score"] = v.matchingScore;
 	line["centre_rmse"] = v.centreRmse;

@@ -81,8 +81,9 @@ std::vector<ObjectObservation> ObjectMapper::update(
 		const Instance& instance = observation.instances[confirmed[k].instance];
 		const auto observed =
 			fuse(frame, instance, confirmed[k], objects[k], T_world_camera, localMap);
-		// Two tracks of one object, as when a mask was split: one measurement is enough.
-		if (observed && associated.insert(observed->object).second) seen.push_back(*observed);
+		if (!observed) continue;
+		associated.insert(observed->object);
+		seen.push_back(*observed);
 	}
 	map_->updateExistence(predicted, frame, associated);
 	return seen;
@@ -133,6 +134,14 @@ void ObjectMapper::merge(ObjectId kept, ObjectId absorbed)
 {
 	for (auto& entry : objectOfTrack_)
 		if (entry.second == absorbed) entry.second = kept;
+	absorbedBy_[absorbed] = kept;
+}
+
+ObjectId ObjectMapper::mergedInto(ObjectId id) const
+{
+	for (auto it = absorbedBy_.find(id); it != absorbedBy_.end(); it = absorbedBy_.find(id))
+		id = it->second;
+	return id;
 }
 
 void ObjectMapper::remove(ObjectId id)

@@ -185,6 +185,7 @@ void writeRunResults(
 	writeScene(out / "scene.3Dscene", slam);
 	writeG2o((out / "pose_graph.g2o").string(), slam.poseGraph());
 	writeText(out / "loops.jsonl", loopsAsJsonLines(slam.loops()));
+	writeText(out / "associations.csv", associationsAsCsv(slam.associations()));
 	timings.writeCsv((out / "timings.csv").string());
 	writeText(out / "summary.json", summary(slam, info, timings));
 }

@@ -50,6 +50,7 @@ void SemanticSlam::process(const SlamFrame& input)
 	// Sec. III-B, Eq. (1)-(3): association with the map's objects, fusion into their volumes.
 	const auto seen = mapper_->update(frame, instances, tracked, cameraPose(), localMap_);
 	addObservations(seen);
+	remember(instances, seen);
 	map_->markCovisible(localMap_.objects());
 	keepKeyFrame(input);
 
@@ -136,8 +137,11 @@ void SemanticSlam::addObservations(const std::vector<ObjectObservation>& seen)
 	information.bottomRightCorner<3, 3>() /=
 		options_.observationSigmaAngle * options_.observationSigmaAngle;
 
+	std::set<ObjectId> measured;
 	for (const ObjectObservation& observation : seen)
 	{
+		// Two tracks of one object, as when a mask was split: one measurement is enough.
+		if (!measured.insert(observation.object).second) continue;
 		const NodeId node = NodeId::object(observation.object);
 		const CPose3D& T_world_object = map_->object(observation.object).T_world_object;
 		if (!poseGraph_->has(node)) poseGraph_->setNode(node, T_world_object);
@@ -151,6 +155,23 @@ void SemanticSlam::addObservations(const std::vector<ObjectObservation>& seen)
 		edge.information = information;
 		poseGraph_->addEdge(edge);
 	}
+}
+
+void SemanticSlam::remember(
+	const CObservationInstances& instances, const std::vector<ObjectObservation>& seen)
+{
+	for (const ObjectObservation& observation : seen)
+		associations_.push_back(
+			{odometryTrajectory_.back().time, frameCount() - 1, observation.instance,
+			 instances.instances[observation.instance].box, observation.object,
+			 observation.object});
+}
+
+std::vector<AssociationRecord> SemanticSlam::associations() const
+{
+	auto result = associations_;
+	for (AssociationRecord& record : result) record.object = mapper_->mergedInto(record.object);
+	return result;
 }
 
 void SemanticSlam::keepKeyFrame(const SlamFrame& input)
@@ -191,6 +212,7 @@ void SemanticSlam::closeLoop(mrpt::Clock::time_point time)
 	LoopRecord record;
 	record.frame = frameCount() - 1;
 	record.time = time;
+	record.localMapSince = localMap_.firstFrame();
 	record.verdict = loopCloser_->detect(localMap_);
 	record.matched = matchedObjects(record.verdict);
 	if (record.verdict.decision == LoopVerdict::Decision::Accepted)

@@ -39,14 +39,16 @@ struct LoopVerdict
 	/** As many as matches, in their order: the local map has its own drift, so each object has its own
 	 *  correction. Empty when the detector measures none; T_target_query then holds for all. */
 	std::vector<MatchAlignment> alignments;
-	std::size_t queryObjects = 0;      //!< objects in the local map
-	std::size_t candidateMatches = 0;  //!< matches before verification
-	double matchedEdgeShare = 0.0;     //!< matched edges / edges of the query graph, [0, 1]
-	double matchingScore = 0.0;        //!< of the graph matcher
-	double centreRmse = 0.0;           //!< of the matched centres under T_target_query [m]
-	double runnerUp = 0.0;             //!< inliers of the best rival / ours, in [0, 1]
-	double alignmentFitness = 0.0;     //!< share of aligned surface points, [0, 1]
-	double alignmentRmse = 0.0;        //!< of the aligned surfaces [m]
+	/** The graph matcher's, before the verification; query id first. */
+	std::vector<std::pair<ObjectId, ObjectId>> candidates;
+	bool graphsMatch = false;       //!< they are a detection, to be verified
+	std::size_t queryObjects = 0;   //!< objects in the local map
+	double matchedEdgeShare = 0.0;  //!< matched edges / edges of the query graph, [0, 1]
+	double matchingScore = 0.0;     //!< of the graph matcher
+	double centreRmse = 0.0;        //!< of the matched centres under T_target_query [m]
+	double runnerUp = 0.0;          //!< inliers of the best rival / ours, in [0, 1]
+	double alignmentFitness = 0.0;  //!< share of aligned surface points, [0, 1]
+	double alignmentRmse = 0.0;     //!< of the aligned surfaces [m]
 };
 
 /** Recognises the local map (query) in the global map (target); both are objects of one map. */

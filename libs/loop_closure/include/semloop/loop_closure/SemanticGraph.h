@@ -1,5 +1,6 @@
 #pragma once
 
+#include <mrpt/math/CQuaternion.h>
 #include <mrpt/math/TPoint3D.h>
 #include <semloop/object_map/CObjectMap.h>
 
@@ -20,7 +21,9 @@ struct GraphVertex
 	mrpt::math::TPoint3D position;                //!< centre, in the graph's world [m]
 	std::map<std::string, double> labelScores;    //!< empty: the label is certain
 	std::vector<std::vector<float>> embeddings;   //!< each of unit length; may be empty
-	std::optional<mrpt::math::TVector3D> extent;  //!< [m]
+	std::optional<mrpt::math::TVector3D> extent;  //!< along the object's axes [m]
+	/** Of the object's axes in the graph's world; none: they are the world's. */
+	std::optional<mrpt::math::CQuaternionDouble> orientation;
 	int observations = 0;
 };
 

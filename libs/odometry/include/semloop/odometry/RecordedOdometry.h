@@ -7,6 +7,7 @@
 #include <semloop/odometry/Odometry.h>
 
 #include <optional>
+#include <random>
 #include <string>
 
 namespace semloop
@@ -14,13 +15,18 @@ namespace semloop
 struct RecordedOdometryOptions : Options
 {
 	std::string file;
-	double maxGap = 0.2;  //!< [s]
-	double drift = 0;     //!< [m]
-	double driftYaw = 0;  //!< [rad]
+	double maxGap = 0.2;    //!< [s]
+	double drift = 0;       //!< [m]
+	double driftYaw = 0;    //!< [rad]
+	double noise = 0;       //!< [m]
+	double noiseAngle = 0;  //!< [rad]
+	int noiseSeed = 1;
 	double sigmaTranslationPerMetre = 0.02;
 	double sigmaRotationPerRadian = 0.02;
 	double sigmaTranslationFloor = 0.001;             //!< [m]
 	double sigmaRotationFloor = mrpt::DEG2RAD(0.05);  //!< [rad]
+	double translationWalk = 0;                       //!< [m / sqrt(m)]
+	double rotationWalk = 0;                          //!< [rad / sqrt(m)]
 	double lostSigmaTranslation = 0.05;               //!< [m]
 	double lostSigmaRotation = mrpt::DEG2RAD(5.0);    //!< [rad]
 
@@ -44,8 +50,14 @@ protected:
  *  so that the position error grows evenly to d and the relative poses are those of the corrupted
  *  trajectory. The covariance grows with it: d^2, a^2 in sum over the file, as if it were a random walk.
  *
- *  Covariance of a step of length l and angle r: (l sigma_per_metre)^2 + (r sigma_per_radian)^2 + floor^2
- *  of translation and rotation. */
+ *  Experiment of Sec. IV-A: with noise s_t and noise_deg s_r the pose of every frame but the first,
+ *  (R, t) in the odometry's world, becomes (R exp(w), t + n), where every component of n and w is drawn
+ *  anew from N(0, s_t^2) and N(0, s_r^2): a localisation noise that does not add up. A step has that of
+ *  two poses: 2 s_t^2 and 2 s_r^2 more covariance.
+ *
+ *  Covariance of a step of length l and angle r: (l sigma_per_metre)^2 + floor^2 + l walk^2 of the
+ *  translation, (r sigma_per_radian)^2 + floor^2 + l walk^2 of the rotation. The walk is what a drift
+ *  amounts to whatever the frame rate: its sum over a path of length L is L walk^2. */
 class RecordedOdometry : public Odometry
 {
 	DEFINE_MRPT_OBJECT(RecordedOdometry, semloop)
@@ -86,6 +98,7 @@ private:
 	mrpt::poses::CPose3D T_odom_previous_;
 	Matrix6 lostCovariance_ = Matrix6::Zero();  //!< of the previous pose, when that was guessed
 	ConstantVelocity motion_;
+	std::mt19937_64 random_;
 };
 
 }  // namespace semloop

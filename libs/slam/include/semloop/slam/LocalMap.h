@@ -4,9 +4,11 @@
 #include <semloop/config/Options.h>
 #include <semloop/object_map/Object.h>
 
+#include <cstddef>
 #include <map>
 #include <optional>
 #include <set>
+#include <vector>
 
 namespace semloop
 {
@@ -51,11 +53,15 @@ public:
 		return !pathAtLoop_ || path_ - *pathAtLoop_ >= options_.pathBetweenLoops;
 	}
 
+	/** The local map is of the frames from this one on; the first call of advance() was for frame 0. */
+	std::size_t firstFrame() const;
+
 	double path() const { return path_; }  //!< travelled so far [m]
 
 private:
 	LocalMapOptions options_;
 	double path_ = 0.0;
+	std::vector<double> pathAtFrame_;  //!< [m]
 	std::optional<double> pathAtLoop_;
 	std::map<ObjectId, double> lastSeen_;  //!< object -> path when last seen [m]
 };

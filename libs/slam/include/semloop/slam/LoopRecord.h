@@ -23,8 +23,9 @@ struct LoopRecord
 {
 	std::size_t frame = 0;  //!< camera node at which it was tried
 	mrpt::Clock::time_point time;
+	std::size_t localMapSince = 0;  //!< camera node from which on the local map is
 	LoopVerdict verdict;
-	std::vector<MatchedObjects> matched;  //!< verdict.matches in detail
+	std::vector<MatchedObjects> matched;             //!< verdict.matches in detail
 	std::optional<OptimizationReport> optimization;  //!< when accepted
 };
 

@@ -31,16 +31,19 @@ public:
 	ObjectMapper(
 		CObjectMap::Ptr map, std::shared_ptr<const Associator> associator, StageTimings& timings);
 
-	/** T_world_camera of the optical frame. Only objects of the local map are landmarks: the drift
-	 *  since others were seen may have put them where another one stands now. */
+	/** What went into the map, in the order of tracked; two tracks of one object, as when a mask was
+	 *  split, are both there. T_world_camera of the optical frame. Only objects of the local map are
+	 *  landmarks: the drift since others were seen may have put them where another one stands now. */
 	std::vector<ObjectObservation> update(
 		const RgbdFrame& frame, const CObservationInstances& observation,
 		const std::vector<TrackedInstance>& tracked, const mrpt::poses::CPose3D& T_world_camera,
 		const LocalMap& localMap);
 
-	/** Tracks of the absorbed object belong to the kept one from now on. */
+	/** Tracks and observations of the absorbed object belong to the kept one from now on. */
 	void merge(ObjectId kept, ObjectId absorbed);
 	void remove(ObjectId id);
+	/** What the object has become by all merges so far; a removed one keeps its id. */
+	ObjectId mergedInto(ObjectId id) const;
 
 private:
 	/** Object of each detection, in the order of confirmed. */
@@ -59,6 +62,7 @@ private:
 	std::shared_ptr<const Associator> associator_;
 	StageTimings& timings_;
 	std::map<uint64_t, ObjectId> objectOfTrack_;
+	std::map<ObjectId, ObjectId> absorbedBy_;
 };
 
 }  // namespace semloop

@@ -3,6 +3,7 @@
 #include <mrpt/config/CConfigFileBase.h>
 #include <mrpt/system/COutputLogger.h>
 #include <semloop/association/InstanceTracker.h>
+#include <semloop/object_map/AssociationRecord.h>
 #include <semloop/object_map/CObjectMap.h>
 #include <semloop/observations/Trajectory.h>
 #include <semloop/odometry/Odometry.h>
@@ -45,6 +46,8 @@ public:
 	const CObjectMap& map() const { return *map_; }
 	const PoseGraph& poseGraph() const { return *poseGraph_; }
 	const std::vector<LoopRecord>& loops() const { return loops_; }
+	/** Every detection that went into the map, in order of time; objects as they are now. */
+	std::vector<AssociationRecord> associations() const;
 	Trajectory trajectory() const;  //!< optimised T_world_camera of every frame
 	const Trajectory& odometryTrajectory() const { return odometryTrajectory_; }
 	/** Frames kept for map.simplemap, with their camera node. */
@@ -70,6 +73,8 @@ private:
 	void placeFirstCamera(const RgbdFrame& frame);
 	void addCamera(const RgbdFrame& frame, const OdometryEstimate& odometry);
 	void addObservations(const std::vector<ObjectObservation>& seen);
+	void remember(
+		const CObservationInstances& instances, const std::vector<ObjectObservation>& seen);
 	void keepKeyFrame(const SlamFrame& input);
 	void maintainMap();
 	std::vector<MatchedObjects> matchedObjects(const LoopVerdict& verdict) const;
@@ -100,6 +105,7 @@ private:
 	std::optional<mrpt::math::TVector3D> up_;  //!< in the robot's frame, from the accelerometer
 	Trajectory odometryTrajectory_;
 	std::vector<LoopRecord> loops_;
+	std::vector<AssociationRecord> associations_;  //!< object: as first associated
 	std::vector<KeyFrame> keyFrames_;
 	double pathAtKeyFrame_ = 0.0;
 	std::size_t segmentedFrames_ = 0;

@@ -1,0 +1,53 @@
+#include "RunFolder.h"
+
+#include <semloop/config/Error.h>
+
+#include <cstdio>
+#include <filesystem>
+
+#include "Application.h"
+
+namespace fs = std::filesystem;
+
+namespace semloop
+{
+std::string runFile(const std::string& folder, const std::string& name)
+{
+	if (!fs::is_directory(folder))
+		throw InputError(folder + ": no such folder; give the one that semloop-slam wrote to");
+	const std::string path = (fs::path(folder) / name).string();
+	requireFile(path, "give a folder that semloop-slam wrote to, or run it again");
+	return path;
+}
+
+std::vector<RunFrame> runWithTruth(const std::string& folder, const std::string& truthRawlog)
+{
+	const auto run = readTumTrajectory(runFile(folder, "trajectory.tum"));
+	const auto associations = readAssociations(runFile(folder, "associations.csv"));
+	requireFile(truthRawlog, "give the rawlog of the true instances");
+	const auto truth = readTrueFrames(truthRawlog);
+	try
+	{
+		return joinWithTruth(run, associations, truth);
+	}
+	catch (const InputError& e)
+	{
+		throw InputError(folder + " with " + truthRawlog + ": " + e.what());
+	}
+}
+
+nlohmann::ordered_json numberOrNull(const std::optional<double>& value)
+{
+	if (!value) return nullptr;
+	return *value;
+}
+
+std::string toText(const std::optional<double>& value)
+{
+	if (!value) return "-";
+	char text[32];
+	std::snprintf(text, sizeof(text), "%.4f", *value);
+	return text;
+}
+
+}  // namespace semloop

@@ -1,0 +1,25 @@
+#pragma once
+
+#include <semloop/evaluation/TrueFrames.h>
+
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace semloop
+{
+/** Path of a file that semloop-slam leaves behind; throws InputError, with the remedy, when it or the
+ *  folder is missing. */
+std::string runFile(const std::string& folder, const std::string& name);
+
+/** The frames of a run with their truth; errors name the files. */
+std::vector<RunFrame> runWithTruth(const std::string& folder, const std::string& truthRawlog);
+
+/** A number, or null. */
+nlohmann::ordered_json numberOrNull(const std::optional<double>& value);
+
+/** Four decimals, or "-". */
+std::string toText(const std::optional<double>& value);
+
+}  // namespace semloop
