@@ -105,6 +105,13 @@ TEST_F(RawlogSimulate, TheObjectsAreWrittenWithHowOftenTheyAreSeen)
 		for (const auto& instance : observation->instances)
 			++seen[observation->labels.name(instance.label())];
 	ASSERT_EQ(graph.vertices.size(), 3u);
+	for (const auto& observation : truth)
+		for (const auto& instance : observation->instances)
+		{
+			const auto id = instance.trueObject.value();
+			EXPECT_EQ(
+				graph.vertices.at(id - 1).label, observation->labels.name(instance.label()));
+		}
 	int all = 0;
 	for (const auto& vertex : graph.vertices)
 	{
