@@ -5,6 +5,7 @@
 #include <semloop/observations/ExternalImages.h>
 
 #include <filesystem>
+#include <fstream>
 #include <opencv2/imgcodecs.hpp>
 
 #include "SceneFiles.h"
@@ -22,16 +23,6 @@ std::string prefixOf(const std::string& rawlog)
 	return fs::path(rawlog).replace_extension().string();
 }
 
-void storeColorExternally(
-	mrpt::obs::CObservation3DRangeScan& scan, const std::string& folder, const std::string& name)
-{
-	const std::string path = (fs::path(folder) / name).string();
-	if (!cv::imwrite(
-			path, scan.intensityImage.asCvMatRef(), {cv::IMWRITE_JPEG_QUALITY, kJpegQuality}))
-		throw InputError(path + ": cannot be written; is the disk full?");
-	scan.intensityImage.setExternalStorage(name);
-}
-
 Trajectory firstOf(Trajectory trajectory, std::size_t count)
 {
 	trajectory.resize(std::min(count, trajectory.size()));
@@ -39,9 +30,10 @@ Trajectory firstOf(Trajectory trajectory, std::size_t count)
 }
 }  // namespace
 
-SimulationFiles::SimulationFiles(const std::string& rawlog, bool embed)
+SimulationFiles::SimulationFiles(const std::string& rawlog, bool embed, bool color)
 	: prefix_(prefixOf(rawlog)),
 	  imagesFolder_(embed ? "" : externalImagesFolder(rawlog)),
+	  color_(color),
 	  rawlog_(rawlog),
 	  trueInstances_(prefix_ + "_truth_instances.rawlog"),
 	  instances_(prefix_ + "_instances.rawlog")
@@ -52,14 +44,27 @@ SimulationFiles::SimulationFiles(const std::string& rawlog, bool embed)
 	if (error) throw InputError(imagesFolder_ + ": cannot be made (" + error.message() + ")");
 }
 
+void SimulationFiles::storeColor(mrpt::obs::CObservation3DRangeScan& scan)
+{
+	const std::string name = mrpt::format("color_%06zu.jpg", frames_);
+	const std::string path = (fs::path(imagesFolder_) / name).string();
+	// Without colour all images are the same.
+	if (color_ || jpeg_.empty())
+		cv::imencode(
+			".jpg", scan.intensityImage.asCvMatRef(), jpeg_,
+			{cv::IMWRITE_JPEG_QUALITY, kJpegQuality});
+	std::ofstream out(path, std::ios::binary);
+	out.write(reinterpret_cast<const char*>(jpeg_.data()), std::streamsize(jpeg_.size()));
+	if (!out.flush()) throw InputError(path + ": cannot be written; is the disk full?");
+	scan.intensityImage.setExternalStorage(name);
+}
+
 void SimulationFiles::write(SimulatedFrame& frame)
 {
 	if (!imagesFolder_.empty())
 	{
-		storeColorExternally(
-			frame.scan, imagesFolder_, mrpt::format("color_%06zu.jpg", frames_));
-		storeDepthExternally(
-			frame.scan, imagesFolder_, mrpt::format("depth_%06zu.bin", frames_));
+		storeColor(frame.scan);
+		storeDepthExternally(frame.scan, imagesFolder_, mrpt::format("depth_%06zu.bin", frames_));
 	}
 	rawlog_.write(frame.acceleration);
 	rawlog_.write(frame.scan);

@@ -1,5 +1,6 @@
 #include "Simulator.h"
 
+#include <semloop/config/Error.h>
 #include <semloop/observations/CameraFrames.h>
 #include <semloop/simulation/CameraPath.h>
 
@@ -69,6 +70,15 @@ Simulator::Simulator(
 		built_.way, description_.path, description_.camera.rate, startTime(),
 		keyOf(seed, kPathStream, 0));
 	renderer_ = std::make_unique<SceneRenderer>(built_.scene);
+	try
+	{
+		// Sensors refuse options that do not fit together at the first frame: better before any file.
+		frame(0, false);
+	}
+	catch (const UsageError& error)
+	{
+		throw UsageError(description_.file + ": " + error.what());
+	}
 }
 
 Trajectory Simulator::odometry() const

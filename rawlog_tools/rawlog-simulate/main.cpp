@@ -45,7 +45,8 @@ bool parse(int argc, char** argv, Arguments& out)
 		"rawlog", "Rawlog to write; everything else is named after it.", true, "", "OUT.rawlog",
 		line);
 	Text furniture(
-		"", "furniture", "Folder of Sweet Home 3D's catalogues.", false, out.furniture, "DIR", line);
+		"", "furniture", "Folder of Sweet Home 3D's catalogues.", false, out.furniture, "DIR",
+		line);
 	TCLAP::ValueArg<unsigned> threads(
 		"", "threads", "Threads; the result does not depend on them. All cores unless given.",
 		false, std::max(1U, std::thread::hardware_concurrency()), "N", line);
@@ -84,6 +85,16 @@ void applySize(RunConfiguration& config, const std::string& size)
 		{"camera.width=" + std::to_string(width), "camera.height=" + std::to_string(height)});
 }
 
+/** Waits for all that have begun: the pool would abort them, and say so. */
+struct FramesAhead : std::deque<std::future<SimulatedFrame>>
+{
+	~FramesAhead()
+	{
+		for (auto& frame : *this)
+			if (frame.valid()) frame.wait();
+	}
+};
+
 /** Renders in all threads, a few frames ahead, and writes in order. */
 std::size_t writeFrames(
 	const Simulator& simulator, const Arguments& arguments, SimulationFiles& files)
@@ -91,16 +102,15 @@ std::size_t writeFrames(
 	const std::size_t all = simulator.trajectory().size();
 	const std::size_t count = arguments.frames == 0 ? all : std::min(all, arguments.frames);
 	mrpt::WorkerThreadsPool pool(arguments.threads);
-	std::deque<std::future<SimulatedFrame>> ahead;
+	FramesAhead ahead;
 	std::size_t begun = 0, written = 0;
 	ProgressBar bar("simulating");
 	while (written < count && !stopRequested())
 	{
 		for (; begun < count && ahead.size() < 2 * arguments.threads; ++begun)
 			ahead.push_back(pool.enqueue(
-				[&simulator, &arguments](std::size_t i) {
-					return simulator.frame(i, arguments.color);
-				},
+				[&simulator, &arguments](std::size_t i)
+				{ return simulator.frame(i, arguments.color); },
 				begun));
 		SimulatedFrame frame = ahead.front().get();
 		ahead.pop_front();
@@ -108,7 +118,6 @@ std::size_t writeFrames(
 		++written;
 		bar.update(written, double(written) / double(count));
 	}
-	for (auto& frame : ahead) frame.wait();
 	bar.clear();
 	return written;
 }
@@ -124,7 +133,7 @@ int run(int argc, char** argv)
 	const auto catalog = FurnitureCatalog::open(arguments.furniture);
 	const Simulator simulator(config, catalog, arguments.seed);
 	catchStopSignal();
-	SimulationFiles files(arguments.rawlog, arguments.embed);
+	SimulationFiles files(arguments.rawlog, arguments.embed, arguments.color);
 	const std::size_t frames = writeFrames(simulator, arguments, files);
 	files.close(simulator, catalog);
 	std::printf(

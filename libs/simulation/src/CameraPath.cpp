@@ -15,9 +15,9 @@ namespace
 {
 using Eigen::Vector2d;
 
-constexpr double kStep = 0.02;       // of the way [m]
-constexpr double kLookAhead = 0.6;   // a carrier's heading is that of the next steps [m]
-constexpr double kEase = 1.0;        // constant of smoothing the heading [s]
+constexpr double kStep = 0.02;      // of the way [m]
+constexpr double kLookAhead = 0.6;  // a carrier's heading is that of the next steps [m]
+constexpr double kEase = 1.0;       // constant of smoothing the heading [s]
 
 /** Barry and Goldman's pyramid for centripetal knots. */
 Vector2d catmullRom(const std::array<Vector2d, 4>& p, double share)
@@ -26,12 +26,34 @@ Vector2d catmullRom(const std::array<Vector2d, 4>& p, double share)
 	for (int i = 1; i < 4; ++i)
 		t[i] = t[i - 1] + std::max(1e-6, std::sqrt((p[i] - p[i - 1]).norm()));
 	const double at = t[1] + share * (t[2] - t[1]);
-	const auto blend = [&](const Vector2d& a, const Vector2d& b, int i, int j) -> Vector2d {
-		return ((t[j] - at) * a + (at - t[i]) * b) / (t[j] - t[i]);
-	};
+	const auto blend = [&](const Vector2d& a, const Vector2d& b, int i, int j) -> Vector2d
+	{ return ((t[j] - at) * a + (at - t[i]) * b) / (t[j] - t[i]); };
 	const Vector2d a1 = blend(p[0], p[1], 0, 1), a2 = blend(p[1], p[2], 1, 2),
 				   a3 = blend(p[2], p[3], 2, 3);
 	return blend(blend(a1, a2, 0, 2), blend(a2, a3, 1, 3), 1, 2);
+}
+
+/** Points on a polyline from its begin to its end, kStep apart or a little less. */
+std::vector<Vector2d> inEqualSteps(const std::vector<Vector2d>& line)
+{
+	double length = 0;
+	for (std::size_t i = 1; i < line.size(); ++i) length += (line[i] - line[i - 1]).norm();
+	if (length < kLookAhead)
+		throw InputError(mrpt::format(
+			"a way of %.2f m is too short to walk; give waypoints further apart", length));
+	const auto steps = std::size_t(std::ceil(length / kStep));
+	std::vector<Vector2d> points{line.front()};
+	double walked = 0;  // to line[i - 1]
+	for (std::size_t i = 1; i < line.size(); ++i)
+	{
+		const Vector2d piece = line[i] - line[i - 1];
+		const auto next = [&] { return double(points.size()) * length / double(steps); };
+		for (; points.size() < steps && next() <= walked + piece.norm();)
+			points.push_back(line[i - 1] + (next() - walked) / piece.norm() * piece);
+		walked += piece.norm();
+	}
+	points.push_back(line.back());
+	return points;
 }
 
 /** Sum of a few sines of standard deviation 1: smooth, and looks random. */
@@ -76,8 +98,7 @@ double unwrapped(double angle, double previous)
 	return previous + std::remainder(angle - previous, 2 * M_PI);
 }
 
-void walk(
-	const std::vector<Vector2d>& way, double speed, double rate, std::vector<Step>& steps)
+void walk(const std::vector<Vector2d>& way, double speed, double rate, std::vector<Step>& steps)
 {
 	const double length = kStep * double(way.size() - 1);
 	const auto count = std::size_t(length / speed * rate);
@@ -118,7 +139,8 @@ void smoothHeadings(std::vector<Step>& steps, double rate)
 std::vector<Vector2d> splineThrough(const std::vector<Vector2d>& waypoints, bool closed)
 {
 	const auto n = int(waypoints.size());
-	const auto point = [&](int i) -> Vector2d {
+	const auto point = [&](int i) -> Vector2d
+	{
 		if (closed) return waypoints[(i + n) % n];
 		// Beyond the ends it goes straight on.
 		if (i < 0) return 2 * waypoints[0] - waypoints[1];
@@ -133,16 +155,7 @@ std::vector<Vector2d> splineThrough(const std::vector<Vector2d>& waypoints, bool
 				{point(i - 1), point(i), point(i + 1), point(i + 2)}, double(sample) / kSamples));
 	dense.push_back(point(closed ? 0 : n - 1));
 
-	std::vector<Vector2d> way{dense.front()};
-	double walked = 0;
-	for (std::size_t i = 1; i < dense.size(); ++i)
-	{
-		walked += (dense[i] - dense[i - 1]).norm();
-		if (walked < kStep) continue;
-		walked -= kStep;
-		way.push_back(dense[i]);
-	}
-	return way;
+	return inEqualSteps(dense);
 }
 
 void requireFreeWay(const std::vector<Vector2d>& way, const FloorPlan& plan, double radius)
@@ -150,7 +163,8 @@ void requireFreeWay(const std::vector<Vector2d>& way, const FloorPlan& plan, dou
 	for (const auto& place : way)
 		if (!plan.isFree(place, radius))
 			throw InputError(mrpt::format(
-				"the way goes through a wall, or closer than %g m to one, at (%.2f, %.2f); move the "
+				"the way goes through a wall, or closer than %g m to one, at (%.2f, %.2f); move "
+				"the "
 				"waypoints beside it or make a door",
 				radius, place.x(), place.y()));
 }
@@ -188,8 +202,8 @@ Trajectory carriedCamera(
 			steps[i].heading + look + options.jitterRotation * yaw.at(t),
 			-options.pitch + options.jitterRotation * pitch.at(t),
 			options.jitterRotation * roll.at(t));
-		const auto sinceStart = std::chrono::duration_cast<mrpt::Clock::duration>(
-			std::chrono::duration<double>(t));
+		const auto sinceStart =
+			std::chrono::duration_cast<mrpt::Clock::duration>(std::chrono::duration<double>(t));
 		trajectory.push_back({start + sinceStart, T_world_sensor + sensorFromCamera()});
 	}
 	return trajectory;

@@ -36,11 +36,12 @@ private:
 	std::vector<std::vector<Eigen::Vector3f>> corners_;
 };
 
-constexpr unsigned kPacket = 8;
+constexpr unsigned kPacket = 16;
 
-/** Eight rays from one point, as Embree takes them. */
+/** Rays from one point, as Embree takes them. */
 template <class Packet>
-void setRay(Packet& rays, unsigned i, const Eigen::Vector3f& origin, const Eigen::Vector3f& direction)
+void setRay(
+	Packet& rays, unsigned i, const Eigen::Vector3f& origin, const Eigen::Vector3f& direction)
 {
 	rays.org_x[i] = origin.x();
 	rays.org_y[i] = origin.y();

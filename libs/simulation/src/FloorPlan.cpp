@@ -11,7 +11,10 @@ namespace
 {
 using Eigen::Vector2d;
 
-Vector2d direction(double yaw) { return {std::cos(yaw), std::sin(yaw)}; }
+Vector2d direction(double yaw)
+{
+	return {std::cos(yaw), std::sin(yaw)};
+}
 
 /** Extent of the corners along an axis. */
 std::pair<double, double> project(const std::vector<Vector2d>& corners, const Vector2d& axis)
@@ -36,10 +39,12 @@ void requireApart(const std::vector<Room>& rooms)
 {
 	for (std::size_t i = 0; i < rooms.size(); ++i)
 		for (std::size_t j = 0; j < i; ++j)
-			if (overlap(rooms[i].footprint(), rooms[j].footprint(), -1e-6))
-				throw InputError(
-					"rooms '" + rooms[j].name + "' and '" + rooms[i].name +
-					"' overlap; change corner or size of one");
+			if (overlap(
+					rooms[i].footprint(), rooms[j].footprint(), FloorPlan::kWallThickness - 1e-6))
+				throw InputError(mrpt::format(
+					"rooms '%s' and '%s' overlap, or leave less than %g m for the wall between "
+					"them; change corner or size of one",
+					rooms[j].name.c_str(), rooms[i].name.c_str(), FloorPlan::kWallThickness));
 }
 }  // namespace
 
@@ -73,10 +78,12 @@ FloorPlan::FloorPlan(std::vector<Room> rooms, std::vector<Door> doors, double he
 	requireApart(rooms_);
 	for (std::size_t room = 0; room < rooms_.size(); ++room) addWalls(room);
 	for (const auto& door : doors_)
-		if (std::none_of(walls_.begin(), walls_.end(), [&](const Wall& wall) {
-				return wall.aboveDoor &&
-					   (wall.footprint.center - door.center).norm() < 2 * kWallThickness;
-			}))
+		if (std::none_of(
+				walls_.begin(), walls_.end(),
+				[&](const Wall& wall) {
+					return wall.aboveDoor &&
+						   (wall.footprint.center - door.center).norm() < 2 * kWallThickness;
+				}))
 			throw InputError(mrpt::format(
 				"the door at (%g, %g) is in no wall, or too near to a corner; a door is given by a "
 				"point on a wall",
@@ -96,7 +103,8 @@ void FloorPlan::addWall(std::size_t index, int side)
 	const int u = side < 2 ? 0 : 1, v = 1 - u;
 	const bool low = side % 2 == 0;
 	const double line = low ? room.corner[v] - t / 2 : room.corner[v] + room.size[v] + t / 2;
-	const auto add = [&](double from, double to, bool aboveDoor) {
+	const auto add = [&](double from, double to, bool aboveDoor)
+	{
 		Wall wall;
 		wall.footprint.center[u] = (from + to) / 2;
 		wall.footprint.center[v] = line;
@@ -108,9 +116,9 @@ void FloorPlan::addWall(std::size_t index, int side)
 		walls_.push_back(wall);
 	};
 	auto doors = doors_;
-	std::sort(doors.begin(), doors.end(), [&](const Door& a, const Door& b) {
-		return a.center[u] < b.center[u];
-	});
+	std::sort(
+		doors.begin(), doors.end(),
+		[&](const Door& a, const Door& b) { return a.center[u] < b.center[u]; });
 	double from = room.corner[u] - t;
 	const double end = room.corner[u] + room.size[u] + t;
 	for (const auto& door : doors)
@@ -127,9 +135,9 @@ void FloorPlan::addWall(std::size_t index, int side)
 
 bool FloorPlan::isFree(const Vector2d& point, double radius) const
 {
-	bool somewhere = std::any_of(rooms_.begin(), rooms_.end(), [&](const Room& room) {
-		return distance(room.footprint(), point) == 0;
-	});
+	bool somewhere = std::any_of(
+		rooms_.begin(), rooms_.end(),
+		[&](const Room& room) { return distance(room.footprint(), point) == 0; });
 	for (const auto& wall : walls_)
 	{
 		const double away = distance(wall.footprint, point);

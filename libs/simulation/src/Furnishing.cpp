@@ -2,13 +2,10 @@
 #include <semloop/config/Error.h>
 #include <semloop/simulation/Furnishing.h>
 
-#include <algorithm>
-#include <array>
-#include <cmath>
 #include <optional>
 
+#include "GroupPlacer.h"
 #include "PlaceFinder.h"
-#include "Random.h"
 
 namespace semloop
 {
@@ -17,28 +14,6 @@ namespace
 using Eigen::Vector2d;
 
 constexpr int kRestarts = 40;  // of a room
-constexpr int kTries = 500;     // of a group
-constexpr int kPrimitiveVariants = 6;
-constexpr double kClearance = 0.04;      // between pieces [m]
-constexpr double kTopMargin = 0.03;      // from the edge of what something stands on [m]
-constexpr double kChairGap = 0.05;       // from what it is pushed to [m]
-
-/** A group's pieces with their places, the base first. */
-struct Placed
-{
-	const FurnitureModel* model = nullptr;
-	std::string item;
-	Footprint footprint;
-	double z = 0;  //!< of its bottom [m]
-	bool onFloor = true;
-};
-using PlacedGroup = std::vector<Placed>;
-
-Vector2d rotated(const Vector2d& v, double yaw)
-{
-	return {
-		std::cos(yaw) * v.x() - std::sin(yaw) * v.y(), std::sin(yaw) * v.x() + std::cos(yaw) * v.y()};
-}
 
 class Furnisher
 {
@@ -46,156 +21,44 @@ public:
 	Furnisher(
 		const SceneDescription& description, const FloorPlan& plan,
 		const std::vector<Vector2d>& way, FurnitureModels& models, uint64_t seed)
-		: description_(description), plan_(plan), way_(way), models_(models), seed_(seed),
-		  random_(seed)
+		: description_(description),
+		  plan_(plan),
+		  way_(way),
+		  seed_(seed),
+		  groups_(description, models, seed)
 	{
 	}
 
-	/** Everything in a room, in the order of its list. */
-	PlacedGroup furnishRoom(std::size_t room);
+	/** Everything in a room, in the order of its list; free in its copies too. */
+	PlacedGroup furnishRoom(std::size_t room, const std::vector<std::size_t>& copies);
 
 private:
-	const FurnitureModel& drawModel(const std::string& item);
-	std::optional<PlacedGroup> tryGroup(const FurnitureGroup& group, const PlaceFinder& finder);
-	bool putOnTop(const std::string& item, const Placed& base, PlacedGroup& group);
-	bool putAround(
-		const std::string& item, std::size_t index, const Placed& base, const PlaceFinder& finder,
-		PlacedGroup& group);
-	/** Empty, and why_, when there is none. */
-	std::optional<PlacedGroup> findPlace(
-		const std::string& room, const std::string& text, const PlaceFinder& finder);
-	std::optional<PlacedGroup> tryRoom(std::size_t room);
+	/** Empty, and why_ says the reason, when a group finds no place. */
+	std::optional<PlacedGroup> tryRoom(std::size_t room, PlaceFinder finder);
 
 	const SceneDescription& description_;
 	const FloorPlan& plan_;
 	const std::vector<Vector2d>& way_;
-	FurnitureModels& models_;
 	uint64_t seed_;
-	RandomStream random_;
-	std::string hindrance_;  //!< of a group's try that came furthest
-	std::string why_;        //!< a room could not be furnished
+	GroupPlacer groups_;
+	std::string why_;
 };
 
-const FurnitureModel& Furnisher::drawModel(const std::string& item)
-{
-	const auto& choices = description_.items.at(item).models;
-	std::size_t draw = random_.bits();
-	if (description_.scene.sameModels)
-	{
-		draw = seed_;
-		for (const char c : item) draw = draw * 31 + static_cast<unsigned char>(c);
-	}
-	return models_.get(choices[draw % choices.size()], draw / choices.size() % kPrimitiveVariants);
-}
-
-bool Furnisher::putOnTop(const std::string& item, const Placed& base, PlacedGroup& group)
-{
-	Placed piece;
-	piece.model = &drawModel(item);
-	piece.item = item;
-	piece.z = base.z + base.model->top;
-	piece.onFloor = false;
-	const auto& spot = description_.items.at(item).spot;
-	piece.footprint.size = piece.model->size.head<2>();
-	piece.footprint.yaw = base.footprint.yaw + random_.uniform(-0.15, 0.15);
-	const Vector2d room =
-		(base.footprint.size - piece.footprint.size) / 2 - Vector2d(kTopMargin, kTopMargin);
-	if (room.minCoeff() < -kTopMargin) return false;
-	Vector2d share(random_.uniform(-1, 1), random_.uniform(-1, 1));
-	if (!spot.empty())
-		share = Vector2d(std::stod(spot[0]), std::stod(spot[1])) +
-				0.12 * Vector2d(random_.uniform(-1, 1), random_.uniform(-1, 1));
-	share = share.cwiseMax(-1.0).cwiseMin(1.0);
-	piece.footprint.center =
-		base.footprint.center +
-		rotated(share.cwiseProduct(room.cwiseMax(0.0)), base.footprint.yaw);
-	for (const auto& other : group)
-		if (!other.onFloor && overlap(piece.footprint, other.footprint, 0.01)) return false;
-	group.push_back(piece);
-	return true;
-}
-
-bool Furnisher::putAround(
-	const std::string& item, std::size_t index, const Placed& base, const PlaceFinder& finder,
-	PlacedGroup& group)
-{
-	Placed piece;
-	piece.model = &drawModel(item);
-	piece.item = item;
-	piece.footprint.size = piece.model->size.head<2>();
-	// Front, back, left, right, and again beside those.
-	const double side = std::array{0.0, M_PI, -M_PI / 2, M_PI / 2}[index % 4];
-	const double yaw = base.footprint.yaw + side;
-	const bool across = index % 4 >= 2;
-	const double reach = (across ? base.footprint.size.x() : base.footprint.size.y()) / 2;
-	const double along = (across ? base.footprint.size.y() : base.footprint.size.x()) / 2;
-	const double away = reach + piece.footprint.size.y() / 2 + kChairGap + random_.uniform(0, 0.15);
-	const double shift = random_.uniform(-0.6, 0.6) * std::max(0.0, along - 0.2);
-	piece.footprint.center = base.footprint.center + rotated({shift, -away}, yaw);
-	// Facing the base: its front, -y, towards it.
-	piece.footprint.yaw = yaw + M_PI + random_.uniform(-0.25, 0.25);
-	if (!finder.isFree(piece.footprint)) return false;
-	for (const auto& other : group)
-		if (other.onFloor && overlap(piece.footprint, other.footprint, kClearance)) return false;
-	group.push_back(piece);
-	return true;
-}
-
-std::optional<PlacedGroup> Furnisher::tryGroup(
-	const FurnitureGroup& group, const PlaceFinder& finder)
-{
-	Placed base;
-	base.item = group.base;
-	base.model = &drawModel(group.base);
-	const auto place = finder.draw(
-		description_.items.at(group.base).place, base.model->size.head<2>(), random_);
-	if (!place) return std::nullopt;
-	base.footprint = *place;
-	PlacedGroup result{base};
-	for (std::size_t i = 0; i < group.around.size(); ++i)
-		if (!putAround(group.around[i], i, base, finder, result))
-		{
-			if (hindrance_.empty()) hindrance_ = "no room for " + group.around[i] + " around it";
-			return std::nullopt;
-		}
-	for (const auto& item : group.onTop)
-	{
-		bool placed = false;
-		for (int attempt = 0; attempt < 50 && !placed; ++attempt)
-			placed = putOnTop(item, base, result);
-		if (placed) continue;
-		hindrance_ = "no room for " + item + " on top";
-		return std::nullopt;
-	}
-	return result;
-}
-
-std::optional<PlacedGroup> Furnisher::findPlace(
-	const std::string& room, const std::string& text, const PlaceFinder& finder)
-{
-	const FurnitureGroup group = description_.group(room, text);
-	hindrance_.clear();
-	for (int i = 0; i < kTries; ++i)
-		if (auto placed = tryGroup(group, finder)) return placed;
-	const FurnitureModel& model = drawModel(group.base);
-	if (hindrance_.empty()) hindrance_ = "no free place on the floor";
-	why_ = mrpt::format(
-		"%s: [room.%s] furniture: '%s' (about %.2f x %.2f m) finds no place with seed %llu: %s; make "
-		"the room larger, take furniture out, or move the path",
-		description_.file.c_str(), room.c_str(), text.c_str(), model.size.x(), model.size.y(),
-		static_cast<unsigned long long>(seed_), hindrance_.c_str());
-	return std::nullopt;
-}
-
-std::optional<PlacedGroup> Furnisher::tryRoom(std::size_t room)
+std::optional<PlacedGroup> Furnisher::tryRoom(std::size_t room, PlaceFinder finder)
 {
 	const auto& [name, options] = description_.rooms[room];
-	PlaceFinder finder(plan_, room, way_, description_.scene.pathClearance, kClearance);
 	PlacedGroup all;
 	for (const auto& text : options.furniture)
 	{
-		const auto placed = findPlace(name, text, finder);
-		if (!placed) return std::nullopt;
+		const std::string place =
+			description_.file + ": [room." + name + "] furniture: '" + text + "'";
+		const auto placed = groups_.place(description_.group(name, text), finder, place);
+		if (!placed)
+		{
+			why_ = place + " finds no place with seed " + std::to_string(seed_) + ": " +
+				   groups_.hindrance();
+			return std::nullopt;
+		}
 		for (const auto& piece : *placed)
 		{
 			if (piece.onFloor) finder.occupy(piece.footprint);
@@ -205,28 +68,68 @@ std::optional<PlacedGroup> Furnisher::tryRoom(std::size_t room)
 	return all;
 }
 
-PlacedGroup Furnisher::furnishRoom(std::size_t room)
+PlacedGroup Furnisher::furnishRoom(std::size_t room, const std::vector<std::size_t>& copies)
 {
+	PlaceFinder finder(plan_, room, way_, description_.scene.pathClearance, kFurnitureGap);
+	std::string also;
+	for (const auto copy : copies)
+	{
+		finder.mindCopy(plan_, copy, way_);
+		also += (also.empty() ? " (and the same place in " : ", ") + plan_.rooms()[copy].name;
+	}
+	if (!also.empty()) also += ")";
 	// What came first may stand in the way of what comes last: begin anew.
 	for (int i = 0; i < kRestarts; ++i)
-		if (auto furnished = tryRoom(room)) return *furnished;
-	throw InputError(why_);
+		if (auto furnished = tryRoom(room, finder)) return *furnished;
+	throw InputError(why_ + also + "; make the room larger, take furniture out, or move the path");
 }
 
-std::size_t roomNamed(const FloorPlan& plan, const std::string& name, const std::string& place)
+/** For each room the one that it is furnished like: itself for most. */
+std::vector<std::size_t> originalsOf(const SceneDescription& description, const FloorPlan& plan)
 {
-	for (std::size_t i = 0; i < plan.rooms().size(); ++i)
-		if (plan.rooms()[i].name == name) return i;
-	throw UsageError(place + " = " + name + ": no such room");
+	const auto& rooms = description.rooms;
+	std::vector<std::size_t> originals(rooms.size());
+	for (std::size_t i = 0; i < rooms.size(); ++i)
+	{
+		const auto& [name, options] = rooms[i];
+		originals[i] = i;
+		if (options.like.empty()) continue;
+		const std::string place =
+			description.file + ": [room." + name + "] like = " + options.like + ": ";
+		std::size_t from = 0;
+		while (from < rooms.size() && rooms[from].first != options.like) ++from;
+		if (from == rooms.size()) throw UsageError(place + "no such room");
+		if (!options.furniture.empty())
+			throw UsageError(place + "this room has furniture of its own; take out one of the two");
+		if (!rooms[from].second.like.empty())
+			throw UsageError(place + "that room is a copy itself; name the one with the furniture");
+		if ((plan.rooms()[from].size - plan.rooms()[i].size).norm() > 1e-6)
+			throw UsageError(place + "that room has another size");
+		originals[i] = from;
+	}
+	return originals;
 }
 
-/** A room's furniture, moved into another of the same size. */
-PlacedGroup moved(PlacedGroup group, const Room& from, const Room& to, const std::string& place)
+std::vector<PlacedGroup> furnishRooms(
+	const SceneDescription& description, const FloorPlan& plan, Furnisher& furnisher)
 {
-	if ((from.size - to.size).norm() > 1e-6)
-		throw UsageError(place + " = " + from.name + ": that room has another size");
-	for (auto& piece : group) piece.footprint.center += to.corner - from.corner;
-	return group;
+	const auto originals = originalsOf(description, plan);
+	std::vector<PlacedGroup> rooms(originals.size());
+	for (std::size_t i = 0; i < rooms.size(); ++i)
+	{
+		if (originals[i] != i) continue;
+		std::vector<std::size_t> copies;
+		for (std::size_t j = 0; j < rooms.size(); ++j)
+			if (j != i && originals[j] == i) copies.push_back(j);
+		rooms[i] = furnisher.furnishRoom(i, copies);
+		for (const auto copy : copies)
+		{
+			rooms[copy] = rooms[i];
+			for (auto& piece : rooms[copy])
+				piece.footprint.center += plan.rooms()[copy].corner - plan.rooms()[i].corner;
+		}
+	}
+	return rooms;
 }
 }  // namespace
 
@@ -235,19 +138,8 @@ std::vector<SceneObject> furnish(
 	FurnitureModels& models, const LabelSet& labels, uint64_t seed)
 {
 	Furnisher furnisher(description, plan, way, models, seed);
-	std::vector<PlacedGroup> rooms(plan.rooms().size());
-	for (std::size_t i = 0; i < rooms.size(); ++i) rooms[i] = furnisher.furnishRoom(i);
-	for (std::size_t i = 0; i < rooms.size(); ++i)
-	{
-		const auto& [name, options] = description.rooms[i];
-		if (options.like.empty()) continue;
-		const std::string place = description.file + ": [room." + name + "] like";
-		const std::size_t from = roomNamed(plan, options.like, place);
-		rooms[i] = moved(rooms[from], plan.rooms()[from], plan.rooms()[i], place);
-	}
-
 	std::vector<SceneObject> objects;
-	for (const auto& room : rooms)
+	for (const auto& room : furnishRooms(description, plan, furnisher))
 		for (const auto& piece : room)
 		{
 			SceneObject object;

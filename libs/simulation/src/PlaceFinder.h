@@ -19,6 +19,9 @@ public:
 		const FloorPlan& plan, std::size_t room, const std::vector<Eigen::Vector2d>& way,
 		double wayClearance, double clearance);
 
+	/** Keeps clear, too, of the doors and the way of a room that gets the same furniture. */
+	void mindCopy(const FloorPlan& plan, std::size_t room, const std::vector<Eigen::Vector2d>& way);
+
 	/** One try: a place at a "wall" (the piece's back to it), in a "corner", or anywhere on the "floor";
 	 *  empty when that is not free. */
 	std::optional<Footprint> draw(
@@ -28,10 +31,14 @@ public:
 	void occupy(const Footprint& footprint) { taken_.push_back(footprint); }
 
 private:
+	/** What must stay clear in `room`, moved to room_. */
+	void keepClear(
+		const FloorPlan& plan, const Room& room, const std::vector<Eigen::Vector2d>& way);
+
 	Room room_;
-	std::vector<Eigen::Vector2d> way_;  //!< near the room, thinned out
+	std::vector<Eigen::Vector2d> way_;  // near the room, thinned out
 	double wayClearance_, clearance_;
-	std::vector<Footprint> keepClear_;  //!< before doors
+	std::vector<Footprint> keepClear_;  // before doors
 	std::vector<Footprint> taken_;
 };
 

@@ -1,8 +1,11 @@
+#include <mrpt/core/format.h>
 #include <semloop/config/Error.h>
 #include <semloop/simulation/CameraPath.h>
 #include <semloop/simulation/Furnishing.h>
+#include <semloop/simulation/Primitives.h>
 #include <semloop/simulation/SceneBuilder.h>
 
+#include <algorithm>
 #include <cmath>
 #include <filesystem>
 #include <set>
@@ -12,6 +15,7 @@ namespace semloop
 namespace
 {
 constexpr double kCarrierRadius = 0.2;  // [m]
+constexpr double kLampSpacing = 3.0;    // [m]
 constexpr double kLampDrop = 0.25;      // of a lamp below the ceiling [m]
 
 LabelSet labelsOf(const SceneDescription& description)
@@ -21,20 +25,73 @@ LabelSet labelsOf(const SceneDescription& description)
 	return LabelSet({labels.begin(), labels.end()});
 }
 
-/** One lamp in the middle of each room. */
+/** At least two in each room, in a row along its longer side. */
 std::vector<PointLight> lamps(const SceneDescription& description, const FloorPlan& plan)
 {
 	std::vector<PointLight> lights;
 	for (const auto& room : plan.rooms())
 	{
-		const Eigen::Vector2d middle = room.footprint().center;
-		PointLight light;
-		light.position = {
-			float(middle.x()), float(middle.y()), float(description.scene.height - kLampDrop)};
-		light.intensity = float(description.scene.lightIntensity);
-		lights.push_back(light);
+		const int along = room.size.x() >= room.size.y() ? 0 : 1;
+		const int count = std::max(2, int(std::lround(room.size[along] / kLampSpacing)));
+		for (int i = 0; i < count; ++i)
+		{
+			Eigen::Vector2d place = room.footprint().center;
+			place[along] = room.corner[along] + room.size[along] * (i + 0.5) / count;
+			PointLight light;
+			light.position = {
+				float(place.x()), float(place.y()), float(description.scene.height - kLampDrop)};
+			light.intensity = float(description.scene.lightIntensity);
+			lights.push_back(light);
+		}
 	}
 	return lights;
+}
+
+/** All models that may be drawn, so that an error does not depend on the seed. */
+void requireModels(const SceneDescription& description, const FurnitureCatalog& catalog)
+{
+	const std::string primitive = "primitive:";
+	const auto kinds = primitiveKinds();
+	for (const auto& [name, item] : description.items)
+		for (const auto& id : item.models)
+		{
+			const std::string place = description.scene.models + ": [" + name + "] models: ";
+			if (id.rfind(primitive, 0) != 0) try
+				{
+					catalog.entry(id);
+				}
+				catch (const InputError& error)
+				{
+					throw InputError(place + error.what());
+				}
+			else if (
+				std::find(kinds.begin(), kinds.end(), id.substr(primitive.size())) == kinds.end())
+				throw InputError(place + "no " + id);
+		}
+}
+
+/** The way, of which a carrier with his camera has room. */
+std::vector<Eigen::Vector2d> freeWay(const SceneDescription& description, const FloorPlan& plan)
+{
+	const PathOptions& path = description.path;
+	if (path.minimumHeight > path.maximumHeight ||
+		path.maximumHeight > description.scene.height - 0.1)
+		throw UsageError(mrpt::format(
+			"%s: [path] minimum_height = %g, maximum_height = %g: not allowed; the first is at "
+			"most the "
+			"second, and that 0.1 below [scene] height = %g",
+			description.file.c_str(), path.minimumHeight, path.maximumHeight,
+			description.scene.height));
+	try
+	{
+		auto way = splineThrough(description.waypoints(), path.closed);
+		requireFreeWay(way, plan, kCarrierRadius);
+		return way;
+	}
+	catch (const InputError& error)
+	{
+		throw InputError(description.file + ": [path] waypoints: " + error.what());
+	}
 }
 }  // namespace
 
@@ -42,15 +99,8 @@ BuiltScene buildScene(
 	const SceneDescription& description, const FurnitureCatalog& catalog, uint64_t seed)
 {
 	BuiltScene built{{}, description.floorPlan(), {}};
-	built.way = splineThrough(description.waypoints(), description.path.closed);
-	try
-	{
-		requireFreeWay(built.way, built.plan, kCarrierRadius);
-	}
-	catch (const InputError& error)
-	{
-		throw InputError(description.file + ": [path] waypoints: " + error.what());
-	}
+	built.way = freeWay(description, built.plan);
+	requireModels(description, catalog);
 	FurnitureModels models(catalog);
 	Scene& scene = built.scene;
 	scene.name = std::filesystem::path(description.file).stem().string();

@@ -20,8 +20,7 @@ std::vector<double> numbers(const std::string& text, std::size_t count, const st
 	for (double value = 0; in >> value;) values.push_back(value);
 	if (!in.eof() || values.size() != count)
 		throw UsageError(
-			place + " = " + text + ": not allowed; use " + std::to_string(count) +
-			" numbers between blanks");
+			place + " = " + text + ": not allowed; use " + std::to_string(count) + " numbers");
 	return values;
 }
 
@@ -56,7 +55,8 @@ std::map<std::string, ItemOptions> loadItems(const std::string& file)
 		const std::string place = file + ": [" + section + "] ";
 		if (item.label.empty() || item.models.empty())
 			throw UsageError(place + ": needs both label and models");
-		if (!item.spot.empty()) point(item.spot, place + "spot");
+		if (!item.spot.empty() && point(item.spot, place + "spot").cwiseAbs().maxCoeff() > 1)
+			throw UsageError(place + "spot: not allowed; use two numbers in [-1, 1]");
 		items.emplace(section, item);
 	}
 	return items;
@@ -73,7 +73,8 @@ void SceneOptions::describe(OptionFields& f)
 	f.number("ambient", ambient, 0, 2, "light from everywhere; 1 shows white as white");
 	f.number(
 		"light_intensity", lightIntensity, 0, 50,
-		"of the lamp under each room's ceiling, at one metre; in the unit of `ambient`");
+		"of each lamp, at one metre, in the unit of `ambient`; a room has one every 3 m, at least "
+		"2");
 }
 
 void RoomOptions::describe(OptionFields& f)
@@ -113,8 +114,7 @@ void CameraOptions::describe(OptionFields& f)
 void ItemOptions::describe(OptionFields& f)
 {
 	f.text("label", label, "class of the object");
-	f.list(
-		"models", models, "ids of the furniture catalogue or `primitive:KIND`; one is drawn");
+	f.list("models", models, "ids of the furniture catalogue or `primitive:KIND`; one is drawn");
 	f.choice("place", place, {"wall", "floor", "corner", "top"}, "where it stands");
 	f.list("spot", spot, "of one on top: x, y in [-1, 1] of the free space there; empty: any");
 }
@@ -151,7 +151,8 @@ FloorPlan SceneDescription::floorPlan() const
 	for (const auto& [name, room] : rooms)
 	{
 		const std::string place = file + ": [" + kRoomPrefix + name + "] ";
-		plan.push_back({name, point(room.corner, place + "corner"), point(room.size, place + "size")});
+		plan.push_back(
+			{name, point(room.corner, place + "corner"), point(room.size, place + "size")});
 		if (plan.back().size.minCoeff() < 0.5)
 			throw UsageError(place + "size: not allowed; a room has at least half a metre");
 	}
@@ -159,6 +160,9 @@ FloorPlan SceneDescription::floorPlan() const
 	for (const auto& text : scene.doors)
 	{
 		const auto values = numbers(text, 3, file + ": [scene] doors");
+		if (values[2] < 0.5)
+			throw UsageError(
+				file + ": [scene] doors = " + text + ": not allowed; a door is at least 0.5 wide");
 		doors.push_back({{values[0], values[1]}, values[2]});
 	}
 	try

@@ -11,7 +11,7 @@ namespace semloop
 namespace
 {
 // A packet's pixels: neighbours, so that its rays stay together.
-constexpr int kTileWidth = 4, kTileHeight = 2;
+constexpr int kTileWidth = 4, kTileHeight = 4;
 constexpr int kHiddenStep = 4;
 
 /** The rays of a pinhole camera in the world, direction with unit length along the optical axis: tfar
@@ -19,8 +19,12 @@ constexpr int kHiddenStep = 4;
 struct CameraRays
 {
 	CameraRays(const mrpt::img::TCamera& camera, const mrpt::poses::CPose3D& T_world_camera)
-		: width(int(camera.ncols)), height(int(camera.nrows)), fx(float(camera.fx())),
-		  fy(float(camera.fy())), cx(float(camera.cx())), cy(float(camera.cy()))
+		: width(int(camera.ncols)),
+		  height(int(camera.nrows)),
+		  fx(float(camera.fx())),
+		  fy(float(camera.fy())),
+		  cx(float(camera.cx())),
+		  cy(float(camera.cy()))
 	{
 		const auto T = T_world_camera.getHomogeneousMatrixVal<mrpt::math::CMatrixDouble44>();
 		rotation = T.asEigen().topLeftCorner<3, 3>().cast<float>();
@@ -77,11 +81,11 @@ cv::Rect CameraRays::projectedBox(const std::vector<Eigen::Vector3f>& points) co
 		   image;
 }
 
-/** Casts up to eight of the camera's rays; false where nothing is hit. */
+/** Casts up to kPacket of the camera's rays; false where nothing is hit. */
 struct Packet
 {
-	alignas(32) std::array<int, kPacket> valid{};
-	RTCRayHit8 rays;
+	alignas(64) std::array<int, kPacket> valid{};
+	RTCRayHit16 rays;
 	std::array<cv::Point, kPacket> pixels;
 	unsigned size = 0;
 
@@ -100,9 +104,24 @@ struct Packet
 		RTCIntersectContext context;
 		rtcInitIntersectContext(&context);
 		context.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
-		rtcIntersect8(valid.data(), scene, &context, &rays);
+		rtcIntersect16(valid.data(), scene, &context, &rays);
 	}
 	bool hit(unsigned i) const { return rays.hit.geomID[i] != RTC_INVALID_GEOMETRY_ID; }
+	Eigen::Vector3f direction(unsigned i) const
+	{
+		return {rays.ray.dir_x[i], rays.ray.dir_y[i], rays.ray.dir_z[i]};
+	}
+	/** Not of unit length, to either side. */
+	Eigen::Vector3f normal(unsigned i) const
+	{
+		return {rays.hit.Ng_x[i], rays.hit.Ng_y[i], rays.hit.Ng_z[i]};
+	}
+	/** Of the angle between ray and normal. */
+	float cosine(unsigned i) const
+	{
+		const Eigen::Vector3f d = direction(i), n = normal(i);
+		return std::min(1.0F, std::abs(n.dot(d)) / std::sqrt(n.squaredNorm() * d.squaredNorm()));
+	}
 };
 
 Hit hitOf(const Packet& packet, unsigned i)
@@ -114,9 +133,9 @@ Hit hitOf(const Packet& packet, unsigned i)
 	hit.triangle = found.primID[i];
 	hit.u = found.u[i];
 	hit.v = found.v[i];
-	const Eigen::Vector3f direction(ray.dir_x[i], ray.dir_y[i], ray.dir_z[i]);
+	const Eigen::Vector3f direction = packet.direction(i);
 	hit.point = Eigen::Vector3f(ray.org_x[i], ray.org_y[i], ray.org_z[i]) + ray.tfar[i] * direction;
-	hit.normal = Eigen::Vector3f(found.Ng_x[i], found.Ng_y[i], found.Ng_z[i]).normalized();
+	hit.normal = packet.normal(i).normalized();
 	if (hit.normal.dot(direction) > 0) hit.normal = -hit.normal;
 	hit.x = packet.pixels[i].x;
 	hit.y = packet.pixels[i].y;
@@ -158,15 +177,13 @@ void SceneRenderer::Impl::renderTile(
 	for (unsigned i = 0; i < packet.size; ++i)
 	{
 		if (!packet.hit(i)) continue;
-		hits.push_back(hitOf(packet, i));
-		const Hit& hit = hits.back();
-		const auto& ray = packet.rays.ray;
-		const Eigen::Vector3f direction(ray.dir_x[i], ray.dir_y[i], ray.dir_z[i]);
-		view.depth.ptr<float>(hit.y)[hit.x] = ray.tfar[i];
-		view.cosine.ptr<float>(hit.y)[hit.x] = -hit.normal.dot(direction) / direction.norm();
-		view.object.ptr<uint16_t>(hit.y)[hit.x] = uint16_t(hit.object);
+		const auto& [x, y] = packet.pixels[i];
+		view.depth.ptr<float>(y)[x] = packet.rays.ray.tfar[i];
+		view.cosine.ptr<float>(y)[x] = packet.cosine(i);
+		view.object.ptr<uint16_t>(y)[x] = uint16_t(packet.rays.hit.geomID[i]);
+		if (!view.color.empty()) hits.push_back(hitOf(packet, i));
 	}
-	if (view.color.empty() || hits.empty()) return;
+	if (hits.empty()) return;
 	shading.shade(hits, colors);
 	for (std::size_t i = 0; i < hits.size(); ++i)
 		view.color.ptr<cv::Vec3f>(hits[i].y)[hits[i].x] = colors[i];
@@ -207,7 +224,8 @@ std::vector<float> SceneRenderer::hiddenShares(const RenderedView& view) const
 		const cv::Rect box = camera.projectedBox(geometry.corners(object));
 		int covered = 0, seen = 0;
 		Packet packet;
-		const auto count = [&] {
+		const auto count = [&]
+		{
 			if (packet.size == 0) return;
 			packet.cast(geometry.only(object));
 			for (unsigned i = 0; i < packet.size; ++i)

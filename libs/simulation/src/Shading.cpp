@@ -9,11 +9,19 @@ namespace
 {
 // A shadow ray starts and ends a little off the surfaces, which would else shade themselves.
 constexpr float kShadowGap = 1e-3F;
+// Less is not worth a ray: it would change a grey level by one.
+constexpr float kFaint = 0.005F;
 
-float fraction(float value) { return value - std::floor(value); }
+float fraction(float value)
+{
+	return value - std::floor(value);
+}
 
 /** From below comes less light than from above. */
-float ambientShare(const Eigen::Vector3f& normal) { return 0.75F + 0.25F * normal.z(); }
+float ambientShare(const Eigen::Vector3f& normal)
+{
+	return 0.75F + 0.25F * normal.z();
+}
 }  // namespace
 
 Shading::Shading(const Scene& scene, const EmbreeScene& geometry)
@@ -33,8 +41,8 @@ cv::Vec3f Shading::albedo(const Hit& hit) const
 	const auto& triangle = mesh.triangles[hit.triangle];
 	const Material& material = mesh.materials[triangle.material];
 	if (material.texture < 0) return material.color;
-	const Eigen::Vector2f uv = (1.0F - hit.u - hit.v) * triangle.uv[0] + hit.u * triangle.uv[1] +
-							   hit.v * triangle.uv[2];
+	const Eigen::Vector2f uv =
+		(1.0F - hit.u - hit.v) * triangle.uv[0] + hit.u * triangle.uv[1] + hit.v * triangle.uv[2];
 	const cv::Mat& texture = mesh.textures[material.texture];
 	const int x = std::min(texture.cols - 1, int(fraction(uv.x()) * float(texture.cols)));
 	const int y = std::min(texture.rows - 1, int(fraction(-uv.y()) * float(texture.rows)));
@@ -49,20 +57,22 @@ void Shading::addLight(
 	std::array<float, kPacket>& irradiance) const
 {
 	std::array<float, kPacket> unshadowed{};
-	alignas(32) std::array<int, kPacket> valid{};
-	RTCRay8 rays;
+	alignas(64) std::array<int, kPacket> valid{};
+	RTCRay16 rays;
 	bool any = false;
 	for (unsigned i = 0; i < hits.size(); ++i)
 	{
 		const Eigen::Vector3f toHit = hits[i].point - light.position;
 		const float squaredDistance = std::max(1e-4F, toHit.squaredNorm());
-		const float cosine = -hits[i].normal.dot(toHit) / std::sqrt(squaredDistance);
-		if (cosine <= 0) continue;
-		unshadowed[i] = light.intensity * cosine / squaredDistance;
-		// From the light to the surface: eight neighbours' rays stay together.
+		const float towards = -hits[i].normal.dot(toHit);  // cosine times distance
+		if (towards <= 0 || light.intensity < kFaint * squaredDistance) continue;
+		const float perDistance = 1.0F / std::sqrt(squaredDistance);
+		unshadowed[i] = light.intensity * towards * perDistance / squaredDistance;
+		if (unshadowed[i] < kFaint) continue;
+		// From the light to the surface: neighbours' rays stay together.
 		setRay(rays, i, light.position, toHit);
 		rays.tnear[i] = kShadowGap;
-		rays.tfar[i] = 1.0F - kShadowGap - 0.002F / std::sqrt(squaredDistance);
+		rays.tfar[i] = 1.0F - kShadowGap - 0.002F * perDistance;
 		valid[i] = -1;
 		any = true;
 	}
@@ -70,7 +80,7 @@ void Shading::addLight(
 	RTCIntersectContext context;
 	rtcInitIntersectContext(&context);
 	context.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
-	rtcOccluded8(valid.data(), geometry_.all(), &context, &rays);
+	rtcOccluded16(valid.data(), geometry_.all(), &context, &rays);
 	for (unsigned i = 0; i < hits.size(); ++i)
 		if (valid[i] != 0 && rays.tfar[i] > 0) irradiance[i] += unshadowed[i];
 }

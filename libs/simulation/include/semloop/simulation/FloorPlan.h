@@ -60,7 +60,7 @@ public:
 	static constexpr double kWallThickness = 0.1;  //!< [m]
 	static constexpr double kDoorHeight = 2.05;    //!< [m]
 
-	/** Throws InputError when rooms overlap or a door is in no wall. */
+	/** Throws InputError when rooms overlap or leave no space for a wall, or a door is in no wall. */
 	FloorPlan(std::vector<Room> rooms, std::vector<Door> doors, double height);
 
 	const std::vector<Room>& rooms() const { return rooms_; }

@@ -20,7 +20,8 @@ struct SceneOptions : Options
 	bool sameModels = false;            //!< one model for all items of a name
 	double pathClearance = 0.35;        //!< of furniture from the path [m]
 	double ambient = 0.35;
-	double lightIntensity = 2.5;  //!< of the one under each room's ceiling
+	double lightIntensity =
+		1.4;  //!< of each lamp, at one metre; a room has one every 3 m, at least 2
 
 protected:
 	void describe(OptionFields& fields) override;
@@ -41,16 +42,16 @@ protected:
 /** Section [path]: how the camera is carried. */
 struct PathOptions : Options
 {
-	std::vector<std::string> waypoints;  //!< "x y" each [m]
-	bool closed = false;                 //!< from the last waypoint back to the first
-	bool returns = false;                //!< then turns round and goes the way back
-	double speed = 0.4;                  //!< [m/s]
+	std::vector<std::string> waypoints;               //!< "x y" each [m]
+	bool closed = false;                              //!< from the last waypoint back to the first
+	bool returns = false;                             //!< then turns round and goes the way back
+	double speed = 0.4;                               //!< [m/s]
 	double minimumHeight = 1.3, maximumHeight = 1.5;  //!< [m]
-	double pitch = mrpt::DEG2RAD(-15.0);  //!< below the horizon is negative [rad]
-	double sway = mrpt::DEG2RAD(30.0);    //!< amplitude of looking to the left and right [rad]
-	double swayPeriod = 8.0;              //!< [s]
-	double turn = 5.0;                    //!< duration of turning round [s]
-	double jitterTranslation = 0.006;     //!< sigma of the hand's shaking [m]
+	double pitch = mrpt::DEG2RAD(-15.0);              //!< below the horizon is negative [rad]
+	double sway = mrpt::DEG2RAD(30.0);  //!< amplitude of looking to the left and right [rad]
+	double swayPeriod = 8.0;            //!< [s]
+	double turn = 5.0;                  //!< duration of turning round [s]
+	double jitterTranslation = 0.006;   //!< sigma of the hand's shaking [m]
 	double jitterRotation = mrpt::DEG2RAD(0.6);  //!< [rad]
 
 protected:
@@ -74,7 +75,8 @@ struct ItemOptions : Options
 	std::string label;
 	std::vector<std::string> models;  //!< catalogue ids or primitive:KIND; one is drawn
 	std::string place = "floor";      //!< wall, floor, corner or top
-	std::vector<std::string> spot;    //!< of one on top: x, y in [-1, 1] of the room there; empty: any
+	std::vector<std::string>
+		spot;  //!< of one on top: x, y in [-1, 1] of the room there; empty: any
 
 protected:
 	void describe(OptionFields& fields) override;
@@ -103,8 +105,7 @@ struct SceneDescription
 	 *  are given by name. Throws UsageError, naming file, section and key, on what cannot be
 	 *  understood. */
 	static SceneDescription load(
-		const mrpt::config::CConfigFileBase& config,
-		const std::vector<std::string>& otherSections);
+		const mrpt::config::CConfigFileBase& config, const std::vector<std::string>& otherSections);
 
 	FloorPlan floorPlan() const;
 	std::vector<Eigen::Vector2d> waypoints() const;
