@@ -129,6 +129,20 @@ TEST(SemanticSlam, AssociationsFollowTheMergesOfALoopClosure)
 	EXPECT_GE(std::count_if(origins.begin(), origins.end(), merged), 3);
 }
 
+TEST(SemanticSlam, WhatATrackSawBeforeItCountedIsItsObjectToo)
+{
+	const TemporaryFolder folder;
+	const RecordedRun recorded = recordRun(folder);
+	// Nothing goes into the map before a track's third frame.
+	const auto run = mapRawlog(recorded.rawlog, runConfiguration(recorded, 0), 2);
+	const auto associations = run->slam->associations();
+	ASSERT_FALSE(associations.empty());
+	EXPECT_EQ(associations.front().frame, 0u);
+	std::set<std::pair<std::size_t, std::size_t>> detections;
+	for (const auto& a : associations)
+		EXPECT_TRUE(detections.insert({a.frame, a.instance}).second) << "told twice";
+}
+
 TEST(SemanticSlam, WhatItWritesIsWhatTheEvaluationReads)
 {
 	const TemporaryFolder folder;

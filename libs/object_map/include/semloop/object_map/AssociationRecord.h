@@ -10,7 +10,7 @@
 
 namespace semloop
 {
-/** A detection that went into the map: a line of associations.csv. */
+/** A detection that is an object of the map: a line of associations.csv. */
 struct AssociationRecord
 {
 	mrpt::Clock::time_point time;
