@@ -4,7 +4,6 @@ BUILD_TYPE ?= Release
 CMAKE_ARGS ?=
 PREFIX ?= /usr/local
 JOBS ?= $(shell nproc)
-OUT ?= out/demo
 SANITIZE := address,undefined
 
 # Continuous integration takes no warning for an answer.
@@ -13,7 +12,7 @@ override CMAKE_ARGS += -DSEMLOOP_WERROR=ON
 endif
 
 .DEFAULT_GOAL := build
-.PHONY: help dependencies configure build test demo test-sanitize bench install format clean
+.PHONY: help dependencies configure build test demo experiments picture test-sanitize bench install format clean
 
 help: ## tells the targets
 	@echo 'make [target] [CMAKE_ARGS=-D...] [BUILD_DIR=build] [JOBS=n]'
@@ -31,9 +30,21 @@ build: configure ## installs what is missing, builds into build/ (programs: buil
 test: build ## builds and runs all tests
 	ctest --test-dir $(BUILD_DIR) -j $(JOBS) --output-on-failure
 
-demo: build ## maps a sequence: DATA=<TUM RGB-D folder> MODEL=<net.onnx> [EMBEDDING=<net.onnx>] [OUT=out/demo]
-	@DATA='$(DATA)' MODEL='$(MODEL)' EMBEDDING='$(EMBEDDING)' OUT='$(OUT)' BIN='$(BUILD_DIR)/bin' \
-		scripts/demo.sh
+demo: OUT ?= out/demo
+demo: build ## simulates a flat and maps it; or maps a sequence: DATA=<TUM RGB-D folder> MODEL=<net.onnx>
+	@DATA='$(DATA)' MODEL='$(MODEL)' EMBEDDING='$(EMBEDDING)' SIMULATE='$(SIMULATE)' SEED='$(SEED)' \
+		SIZE='$(SIZE)' OUT='$(OUT)' BIN='$(BUILD_DIR)/bin' scripts/demo.sh
+
+experiments: OUT ?= out/experiments
+experiments: build ## the paper's experiments into doc/results: [SEEDS=1,2,3] [TUM=<folder> MODEL=<net.onnx>] [QUICK=1]
+	@scripts/install-dependencies.sh python3-matplotlib
+	@SEEDS='$(SEEDS)' JOBS='$(JOBS)' QUICK='$(QUICK)' TUM='$(TUM)' MODEL='$(MODEL)' \
+		EMBEDDING='$(EMBEDDING)' OUT='$(OUT)' BIN='$(BUILD_DIR)/bin' scripts/experiments/run.sh
+
+picture: OUT ?= out/demo
+picture: ## draws what the last make demo simulated and mapped: OUT/apartment.png
+	@scripts/install-dependencies.sh python3-matplotlib
+	@scripts/picture.py $(OUT)/result $(OUT)/apartment $(OUT)/apartment.png
 
 test-sanitize: dependencies ## runs all tests under AddressSanitizer and UndefinedBehaviorSanitizer
 	cmake -S . -B $(BUILD_DIR)-sanitize -G Ninja -DCMAKE_BUILD_TYPE=RelWithDebInfo \

@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <random>
 #include <string>
 
@@ -68,15 +69,80 @@ void spectralMatch(benchmark::State& state)
 }
 BENCHMARK(spectralMatch)->Args({15, 60, 10})->Unit(benchmark::kMillisecond);
 
-/** Whole maps of N = M objects with 20 labels against each other. */
+/** Share of zeros among the (N M)^2 entries of S, Eq. (5): off its diagonal there is an entry for two
+ *  edges that join the same labels. */
+double sparsity(const SemanticGraph& query, const SemanticGraph& target)
+{
+	const auto edgesByLabels = [](const SemanticGraph& graph)
+	{
+		std::map<std::pair<std::string, std::string>, double> count;
+		for (const auto& [a, b] : graph.edges)
+		{
+			const std::string &la = graph.vertices[a].label, &lb = graph.vertices[b].label;
+			++count[{la, lb}];
+			++count[{lb, la}];
+		}
+		return count;
+	};
+	const auto queryEdges = edgesByLabels(query), targetEdges = edgesByLabels(target);
+	double entries = 0;
+	for (const auto& q : query.vertices)
+		for (const auto& t : target.vertices) entries += q.label == t.label;
+	for (const auto& [labels, count] : queryEdges)
+		if (const auto same = targetEdges.find(labels); same != targetEdges.end())
+			entries += count * same->second;
+	return 1 - entries / std::pow(double(query.vertices.size() * target.vertices.size()), 2);
+}
+
+/** Whole maps of N = M objects against each other. Arguments: objects, labels. */
 void spectralMatchOfWholeMaps(benchmark::State& state)
 {
-	const auto target = randomMap(state.range(0), 20, 1);
+	const auto target = randomMap(state.range(0), static_cast<int>(state.range(1)), 1);
 	const auto query = target;
 	const SpectralMatcher matcher;
 	for (auto _ : state) benchmark::DoNotOptimize(matcher.match(query, target));
+	state.counters["sparsity"] = sparsity(query, target);
 }
-BENCHMARK(spectralMatchOfWholeMaps)->Arg(50)->Arg(100)->Arg(200)->Unit(benchmark::kMillisecond);
+BENCHMARK(spectralMatchOfWholeMaps)
+	->ArgsProduct({{25, 50, 100, 200}, {5, 10, 20, 40}})
+	->Unit(benchmark::kMillisecond);
+
+/** An object and those that were seen with it: what a local map would be. */
+SemanticGraph neighbourhood(const SemanticGraph& map, std::size_t centre)
+{
+	std::vector<std::size_t> members;
+	for (std::size_t i = 0; i < map.vertices.size(); ++i)
+		if (i == centre || map.hasEdge(i, centre)) members.push_back(i);
+	SemanticGraph graph;
+	for (std::size_t a = 0; a < members.size(); ++a)
+	{
+		graph.vertices.push_back(map.vertices[members[a]]);
+		for (std::size_t b = 0; b < a; ++b)
+			if (map.hasEdge(members[b], members[a])) graph.edges.insert({b, a});
+	}
+	return graph;
+}
+
+/** The neighbourhood of one object after the other against the whole map of a run, its objects.json. */
+void spectralMatchOfRun(benchmark::State& state, const std::string& file)
+{
+	const auto target = SemanticGraph::load(file);
+	std::vector<SemanticGraph> queries;
+	double sparsities = 0, sizes = 0;
+	for (std::size_t i = 0; i < target.vertices.size(); ++i)
+	{
+		queries.push_back(neighbourhood(target, i));
+		sparsities += sparsity(queries.back(), target);
+		sizes += double(queries.back().vertices.size());
+	}
+	const SpectralMatcher matcher;
+	for (auto _ : state)
+		for (const auto& query : queries) benchmark::DoNotOptimize(matcher.match(query, target));
+	state.counters["queries"] = double(queries.size());
+	state.counters["objects"] = double(target.vertices.size());
+	state.counters["query_objects"] = sizes / double(queries.size());
+	state.counters["sparsity"] = sparsities / double(queries.size());
+}
 
 /** Arguments: query objects, target objects, labels. */
 void verification(benchmark::State& state)
@@ -136,4 +202,15 @@ BENCHMARK_CAPTURE(alignment, semanticPose, "semantic_pose")->Unit(benchmark::kMi
 BENCHMARK_CAPTURE(alignment, fpfhRansac, "fpfh_ransac")->Unit(benchmark::kMillisecond);
 }  // namespace
 
-BENCHMARK_MAIN();
+/** What is left of the arguments are the objects.json of runs. */
+int main(int argc, char** argv)
+{
+	benchmark::Initialize(&argc, argv);
+	for (int i = 1; i < argc; ++i)
+		benchmark::RegisterBenchmark(
+			(std::string("spectralMatchOfRun/") + argv[i]).c_str(), spectralMatchOfRun,
+			std::string(argv[i]))
+			->Unit(benchmark::kMillisecond);
+	benchmark::RunSpecifiedBenchmarks();
+	benchmark::Shutdown();
+}

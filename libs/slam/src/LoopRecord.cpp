@@ -42,6 +42,7 @@ nlohmann::ordered_json toJson(const LoopRecord& record)
 	line["runner_up"] = v.runnerUp;
 	line["alignment_fitness"] = v.alignmentFitness;
 	line["alignment_rmse"] = v.alignmentRmse;
+	if (record.driftSigmas) line["drift_sigmas"] = *record.driftSigmas;
 	if (record.optimization)
 		line["optimization"] = {
 			{"initial_cost", record.optimization->initialCost},

@@ -121,8 +121,9 @@ std::optional<ObjectObservation> ObjectMapper::fuse(
 	{
 		// A track whose object was not recognised in this frame is no second object.
 		const auto known = objectOfTrack_.find(tracked.track);
-		if (known != objectOfTrack_.end() && localMap.contains(known->second)) return std::nullopt;
-		const auto id = map_->addObject(frame, instance, T_world_camera);
+		result.fused = known == objectOfTrack_.end() || !localMap.contains(known->second);
+		const auto id =
+			result.fused ? map_->addObject(frame, instance, T_world_camera) : known->second;
 		if (!id) return std::nullopt;
 		result.object = *id;
 	}

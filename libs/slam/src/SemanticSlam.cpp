@@ -1,9 +1,12 @@
+#include <mrpt/core/format.h>
 #include <mrpt/obs/CObservationIMU.h>
 #include <semloop/config/Error.h>
 #include <semloop/observations/UnixTime.h>
 #include <semloop/slam/SemanticSlam.h>
 
+#include <algorithm>
 #include <cmath>
+#include <tuple>
 #include <utility>
 
 using mrpt::poses::CPose3D;
@@ -50,7 +53,7 @@ void SemanticSlam::process(const SlamFrame& input)
 	// Sec. III-B, Eq. (1)-(3): association with the map's objects, fusion into their volumes.
 	const auto seen = mapper_->update(frame, instances, tracked, cameraPose(), localMap_);
 	addObservations(seen);
-	remember(instances, seen);
+	remember(instances, tracked, seen);
 	map_->markCovisible(localMap_.objects());
 	keepKeyFrame(input);
 
@@ -116,6 +119,7 @@ void SemanticSlam::addCamera(const RgbdFrame& frame, const OdometryEstimate& odo
 			odometry.reason.c_str());
 	}
 	T_odom_camera_ = odometry.T_odom_camera;
+	driftPrior_.add(odometry);
 	odometryTrajectory_.push_back({frame.time, T_world_firstCamera_ + T_odom_camera_});
 
 	poseGraph_->setNode(cameraNode(), cameraPose());
@@ -140,12 +144,12 @@ void SemanticSlam::addObservations(const std::vector<ObjectObservation>& seen)
 	std::set<ObjectId> measured;
 	for (const ObjectObservation& observation : seen)
 	{
-		// Two tracks of one object, as when a mask was split: one measurement is enough.
-		if (!measured.insert(observation.object).second) continue;
 		const NodeId node = NodeId::object(observation.object);
 		const CPose3D& T_world_object = map_->object(observation.object).T_world_object;
 		if (!poseGraph_->has(node)) poseGraph_->setNode(node, T_world_object);
 		localMap_.see(observation.object);
+		// Two detections of one object, as when a mask was split: one measurement is enough.
+		if (!observation.fused || !measured.insert(observation.object).second) continue;
 
 		PoseEdge edge;  // Eq. (7), e_oc
 		edge.kind = PoseEdge::Kind::Observation;
@@ -158,19 +162,35 @@ void SemanticSlam::addObservations(const std::vector<ObjectObservation>& seen)
 }
 
 void SemanticSlam::remember(
-	const CObservationInstances& instances, const std::vector<ObjectObservation>& seen)
+	const CObservationInstances& instances, const std::vector<TrackedInstance>& tracked,
+	const std::vector<ObjectObservation>& seen)
 {
+	std::map<std::size_t, ObjectId> objectOf;  // of an instance
 	for (const ObjectObservation& observation : seen)
-		associations_.push_back(
-			{odometryTrajectory_.back().time, frameCount() - 1, observation.instance,
-			 instances.instances[observation.instance].box, observation.object,
-			 observation.object});
+		objectOf[observation.instance] = observation.object;
+	for (const TrackedInstance& t : tracked)
+	{
+		auto& records = unassociated_[t.track];
+		records.push_back(
+			{odometryTrajectory_.back().time, frameCount() - 1, t.instance,
+			 instances.instances[t.instance].box});
+		const auto object = objectOf.find(t.instance);
+		if (object == objectOf.end()) continue;
+		// What its track saw before is that object, too.
+		for (AssociationRecord& record : records)
+			record.object = record.firstObject = object->second;
+		associations_.insert(associations_.end(), records.begin(), records.end());
+		records.clear();
+	}
 }
 
 std::vector<AssociationRecord> SemanticSlam::associations() const
 {
 	auto result = associations_;
 	for (AssociationRecord& record : result) record.object = mapper_->mergedInto(record.object);
+	std::sort(result.begin(), result.end(), [](const auto& a, const auto& b) {
+		return std::tie(a.frame, a.instance) < std::tie(b.frame, b.instance);
+	});
 	return result;
 }
 
@@ -217,6 +237,17 @@ void SemanticSlam::closeLoop(mrpt::Clock::time_point time)
 	record.matched = matchedObjects(record.verdict);
 	if (record.verdict.decision == LoopVerdict::Decision::Accepted)
 	{
+		record.driftSigmas = driftSigmas(record.verdict);
+		if (options_.maxDriftSigmas > 0 && *record.driftSigmas > options_.maxDriftSigmas)
+		{
+			record.verdict.decision = LoopVerdict::Decision::Rejected;
+			record.verdict.reason += mrpt::format(
+				"; but the correction is %.1f standard deviations of the odometry's drift",
+				*record.driftSigmas);
+		}
+	}
+	if (record.verdict.decision == LoopVerdict::Decision::Accepted)
+	{
 		record.optimization = loopCloser_->close(record.verdict, localMap_, *mapper_);
 		followOptimizedCamera();
 		logger_.logFmt(
@@ -224,6 +255,23 @@ void SemanticSlam::closeLoop(mrpt::Clock::time_point time)
 			record.verdict.reason.c_str());
 	}
 	loops_.push_back(std::move(record));
+}
+
+double SemanticSlam::driftSigmas(const LoopVerdict& verdict) const
+{
+	mrpt::math::TPoint3D centroid(0, 0, 0);
+	auto since = odometryTrajectory_.back().time;
+	for (const auto& [query, target] : verdict.matches)
+	{
+		centroid += map_->object(query).centre() * (1.0 / double(verdict.matches.size()));
+		since = std::min(since, map_->object(target).lastSeen);
+	}
+	const auto frame = std::lower_bound(
+		odometryTrajectory_.begin(), odometryTrajectory_.end() - 1, since,
+		[](const StampedPose& pose, mrpt::Clock::time_point time) { return pose.time < time; });
+	return driftPrior_.sigmas(
+		std::size_t(frame - odometryTrajectory_.begin()), frameCount() - 1, cameraPose(),
+		verdict.T_target_query, centroid);
 }
 
 void SemanticSlam::followOptimizedCamera()

@@ -40,6 +40,10 @@ void SlamOptions::describe(OptionFields& f)
 		"observation_sigma_deg", observationSigmaAngle, 0.01, 180,
 		"of an object seen from a camera, e_oc");
 	f.number(
+		"max_drift_sigmas", maxDriftSigmas, 0, 1000,
+		"a loop closure that corrects more than odometry can have drifted since its objects were "
+		"seen, in standard deviations, is rejected; 0: no limit");
+	f.number(
 		"key_pose_distance", keyPoseDistance, 0.01, 100,
 		"path between key poses of map.simplemap [m]");
 }

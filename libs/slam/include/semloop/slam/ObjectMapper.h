@@ -14,12 +14,14 @@
 
 namespace semloop
 {
-/** One detection that went into the map. */
+/** One detection that is an object of the map. */
 struct ObjectObservation
 {
 	ObjectId object = 0;
 	std::size_t instance = 0;  //!< index in the frame's observation
 	uint64_t track = 0;
+	/** Its measurements went into the object's volume. Else only its track says what it is. */
+	bool fused = true;
 };
 
 /** Sec. III-B, object-level data association and fusion: detections that the tracker confirmed are

@@ -8,6 +8,7 @@
 #include <semloop/observations/Trajectory.h>
 #include <semloop/odometry/Odometry.h>
 #include <semloop/pose_graph/PoseGraph.h>
+#include <semloop/slam/DriftPrior.h>
 #include <semloop/slam/FrameSource.h>
 #include <semloop/slam/LocalMap.h>
 #include <semloop/slam/LoopCloser.h>
@@ -74,11 +75,14 @@ private:
 	void addCamera(const RgbdFrame& frame, const OdometryEstimate& odometry);
 	void addObservations(const std::vector<ObjectObservation>& seen);
 	void remember(
-		const CObservationInstances& instances, const std::vector<ObjectObservation>& seen);
+		const CObservationInstances& instances, const std::vector<TrackedInstance>& tracked,
+		const std::vector<ObjectObservation>& seen);
 	void keepKeyFrame(const SlamFrame& input);
 	void maintainMap();
 	std::vector<MatchedObjects> matchedObjects(const LoopVerdict& verdict) const;
 	void closeLoop(mrpt::Clock::time_point time);
+	/** How improbable the correction is, see DriftPrior. */
+	double driftSigmas(const LoopVerdict& verdict) const;
 	void followOptimizedCamera();
 
 	mrpt::poses::CPose3D cameraPose() const { return T_world_odom_ + T_odom_camera_; }
@@ -103,9 +107,12 @@ private:
 	mrpt::poses::CPose3D T_odom_camera_;
 	mrpt::poses::CPose3D T_segmented_camera_;  //!< motion since the last segmented frame
 	std::optional<mrpt::math::TVector3D> up_;  //!< in the robot's frame, from the accelerometer
+	DriftPrior driftPrior_;
 	Trajectory odometryTrajectory_;
 	std::vector<LoopRecord> loops_;
 	std::vector<AssociationRecord> associations_;  //!< object: as first associated
+	/** Detections that had no object yet, by their track. */
+	std::map<uint64_t, std::vector<AssociationRecord>> unassociated_;
 	std::vector<KeyFrame> keyFrames_;
 	double pathAtKeyFrame_ = 0.0;
 	std::size_t segmentedFrames_ = 0;

@@ -36,6 +36,7 @@ struct SlamOptions : Options
 	int minObservations = 5;        //!< objects seen in fewer frames are left out of the results
 	double observationSigma = 0.2;  //!< of e_oc [m]
 	double observationSigmaAngle = 0.2;  //!< of e_oc [rad]
+	double maxDriftSigmas = 4.0;  //!< of a loop closure's correction; 0: no limit
 	double keyPoseDistance = 0.3;        //!< path between two key poses of map.simplemap [m]
 
 protected:
