@@ -21,7 +21,8 @@ struct Apartment
 	{
 		const mrpt::config::CConfigFile config(SEMLOOP_SOURCE_DIR
 											   "/config_ini/scenes/apartment.ini");
-		const auto description = SceneDescription::load(config, {});
+		const auto description = SceneDescription::load(
+			config, {"depth_sensor", "color_sensor", "detector", "odometry"});
 		built = std::make_unique<BuiltScene>(buildScene(description, FurnitureCatalog::open(), 1));
 		camera = cameraOf(description.camera);
 		way = carriedCamera(built->way, description.path, 0.1, mrpt::Clock::fromDouble(0), 1);
