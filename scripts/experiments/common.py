@@ -73,7 +73,9 @@ def text_of(*command):
 
 
 def commit():
-    return text_of("git", "describe", "--always", "--dirty")
+    """As git describe --always --dirty, but the results themselves may change."""
+    changed = text_of("git", "status", "--porcelain", "-uno", "--", ".", ":!doc/results")
+    return text_of("git", "describe", "--always") + ("-dirty" if changed else "")
 
 
 class Run:
