@@ -107,12 +107,18 @@ BENCHMARK(spectralMatchOfWholeMaps)
 	->ArgsProduct({{25, 50, 100, 200}, {5, 10, 20, 40}})
 	->Unit(benchmark::kMillisecond);
 
-/** An object and those that were seen with it: what a local map would be. */
+/** An object and the nearest that were seen with it, twelve in all: what a local map has. */
 SemanticGraph neighbourhood(const SemanticGraph& map, std::size_t centre)
 {
 	std::vector<std::size_t> members;
 	for (std::size_t i = 0; i < map.vertices.size(); ++i)
 		if (i == centre || map.hasEdge(i, centre)) members.push_back(i);
+	std::sort(
+		members.begin(), members.end(),
+		[&](std::size_t a, std::size_t b)
+		{ return map.distance(a, centre) < map.distance(b, centre); });
+	members.resize(std::min<std::size_t>(members.size(), 12));
+	std::sort(members.begin(), members.end());
 	SemanticGraph graph;
 	for (std::size_t a = 0; a < members.size(); ++a)
 	{

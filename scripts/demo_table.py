@@ -24,7 +24,7 @@ def trajectory_rows(evaluator, result, truth):
 
 def loop_rows(evaluator, result, truth, frames_apart):
     loops = evaluate(evaluator, "loops", f"{result}/loops.jsonl", "--truth", truth,
-                     "--frames-apart", str(frames_apart))
+                     "--frames-apart", str(frames_apart), "--minimum-pixels", "64")
     accepted = loops["after_verification"]
     yield "loops closed", (f"{accepted['true_positives']} true, "
                            f"{accepted['false_positives']} false")

@@ -25,6 +25,9 @@ GraphVertex vertexOf(const SceneObject& object, const LabelSet& labels, int obse
 	vertex.position = object.T_world_object.composePoint(
 		toPoint((bounds.minimum + bounds.maximum) / 2.0F));
 	vertex.extent = mrpt::math::TVector3D(size.x(), size.y(), size.z());
+	mrpt::math::CQuaternionDouble orientation;
+	object.T_world_object.getAsQuaternion(orientation);
+	vertex.orientation = orientation;
 	vertex.observations = observations;
 	return vertex;
 }

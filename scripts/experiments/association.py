@@ -12,8 +12,6 @@ METHODS = [("proposed", "semloop::ObjectAssociator"),
            ("nearest neighbour", "semloop::NearestNeighbourAssociator")]
 NOISES = [("translation", "noise", "m", [0, 0.02, 0.05, 0.1, 0.2]),
           ("rotation", "noise_deg", "deg", [0, 1, 2, 5, 10])]
-# Smaller ones cannot come into the map, see [object_map] min_pixels.
-MINIMUM_PIXELS = 64
 NO_LOOPS = "slam.loop_every_frames=100000"
 
 
@@ -32,7 +30,7 @@ def run_of(opts, scene, seed, method, key, level):
         slam += ["--set", setting]
     evaluate = [program(opts, "semloop-eval"), "association", "--json", folder,
                 "--truth", f"{prefix}_truth_instances.rawlog",
-                "--minimum-pixels", str(MINIMUM_PIXELS)]
+                "--minimum-pixels", str(common.MINIMUM_PIXELS)]
     return Run(folder, [slam, (evaluate, "association.json")], remove=common.BULKY)
 
 
@@ -93,7 +91,7 @@ def main():
         f"embeddings; loop closure is off (`{NO_LOOPS}`), the rest is `{common.CONFIG}`. "
         + common.SIMULATION_TEXT,
         "Accuracy is the paper's: boxes that went into the object assigned to their real one / true "
-        f"boxes (`semloop-eval association --minimum-pixels {MINIMUM_PIXELS}`). The last two columns "
+        f"boxes (`semloop-eval association --minimum-pixels {common.MINIMUM_PIXELS}`). The last two columns "
         "leave out the true boxes that are not in the map at all: held back by the tracker, too far "
         "or too small. Median over the seeds (least - greatest).",
         "![Accuracy against noise](association.svg)", *sections, common.footer(opts, runs))

@@ -25,6 +25,8 @@ SIMULATION = ["--no-color", "--size", "320x240", "--set", f"camera.rate={RATE}",
 SIMULATION_TEXT = ("The scenes are simulated with `rawlog-simulate --no-color --size 320x240 "
                    f"--set camera.rate={RATE}`, each seed with other furniture, places and noise.")
 CONFIG = "config_ini/simulated.ini"
+# Smaller objects are not observed: they cannot come into the map, see [object_map] min_pixels.
+MINIMUM_PIXELS = 64
 BULKY = ["map.objmap", "map.simplemap", "scene.3Dscene", "pose_graph.g2o", "objects"]
 QUICK_FRAMES = 200
 
@@ -71,7 +73,9 @@ def text_of(*command):
 
 
 def commit():
-    return text_of("git", "describe", "--always", "--dirty")
+    """As git describe --always --dirty, but the results themselves may change."""
+    changed = text_of("git", "status", "--porcelain", "-uno", "--", ".", ":!doc/results")
+    return text_of("git", "describe", "--always") + ("-dirty" if changed else "")
 
 
 class Run:
@@ -180,7 +184,8 @@ def mapping(opts, scene, seed, name="default", settings=()):
     for setting in settings:
         slam += ["--set", setting]
     loops = [program(opts, "semloop-eval"), "loops", "--json", f"{folder}/loops.jsonl",
-             "--truth", f"{prefix}_truth_instances.rawlog", "--frames-apart", str(FRAMES_APART)]
+             "--truth", f"{prefix}_truth_instances.rawlog", "--frames-apart", str(FRAMES_APART),
+             "--minimum-pixels", str(MINIMUM_PIXELS)]
     return Run(folder, [slam, (loops, "loops.json"),
                         *trajectory_commands(opts, folder, f"{prefix}_groundtruth.tum")],
                remove=BULKY)
@@ -269,7 +274,7 @@ def pyplot():
     import matplotlib
     matplotlib.use("svg")
     matplotlib.rcParams.update({
-        "svg.hashsalt": "semloop", "font.size": 9, "axes.spines.top": False,
+        "svg.hashsalt": "semloop", "svg.fonttype": "none", "font.size": 9, "axes.spines.top": False,
         "axes.spines.right": False, "axes.grid": True, "grid.alpha": 0.3, "legend.frameon": False,
         "axes.prop_cycle": matplotlib.cycler(color=COLORS)})
     import matplotlib.pyplot

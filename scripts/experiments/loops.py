@@ -53,10 +53,11 @@ def main():
         common.SIMULATION_TEXT + " They are mapped from noisy odometry and noisy instances with "
         f"`{common.CONFIG}`, once as it is (*default*) and once with the paper's rule that half of "
         "the query's edges are matched (*as published*: `loop_detection.min_edge_share=0.5`). The "
-        "corridor of identical rooms and `no_loop` are walked through once: every loop there is "
-        "false.",
-        f"`semloop-eval loops --frames-apart {common.FRAMES_APART}`, the paper's 500 frames at "
-        f"{common.RATE} Hz, judges. *Detections* are what the graph matcher finds, *verified* what is "
+        "corridor of identical rooms and `no_loop` are walked through once, nothing is seen again: "
+        "the right number of loops is zero.",
+        f"`semloop-eval loops --frames-apart {common.FRAMES_APART} --minimum-pixels "
+        f"{common.MINIMUM_PIXELS}` judges: the paper's 500 frames, at {common.RATE} Hz; smaller objects "
+        "cannot come into the map. *Detections* are what the graph matcher finds, *verified* what is "
         "left after the geometric verification and the alignment of the surfaces. A real sequence "
         "has no true objects, so its detections are only counted.",
         "## All scenes and seeds", common.table(["rule", *columns], totals),

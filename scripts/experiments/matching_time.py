@@ -102,7 +102,8 @@ def main():
         "`spectralMatchOfWholeMaps`); in the table of the scenes also the median over the seeds "
         "(least - greatest).",
         "## In the maps of the scenes",
-        "*Match*: an object and those seen with it against the whole map, mean over all objects. "
+        "*Match*: an object and the nearest seen with it, twelve in all, against the whole map; mean "
+        "over all objects. "
         "*Loop detection* is a whole attempt in the run itself, wall time with other runs beside it: "
         "matching, geometric verification and, where these succeed, the alignment of the surfaces.",
         common.table(["scene", "match [ms]", "sparsity of S", "objects of the query",
