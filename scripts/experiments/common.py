@@ -207,6 +207,16 @@ def sequence_mapping(opts, name="default", settings=()):
                remove=BULKY)
 
 
+def mappings(opts, scenes):
+    """The runs of each scene, simulated where they are missing, and of the real sequence, by name."""
+    simulate(opts, scenes)
+    groups = {scene: [mapping(opts, scene, seed) for seed in opts.seeds] for scene in scenes}
+    if opts.sequence:
+        real = sequence_mapping(opts)
+        groups[real.folder.split("/")[-1]] = [real]
+    return groups
+
+
 # --- tables -------------------------------------------------------------------------------------------
 
 def present(values):

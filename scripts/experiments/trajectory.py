@@ -30,11 +30,7 @@ def plot(opts, groups):
 
 def main():
     opts = common.options(__doc__)
-    common.simulate(opts, SCENES)
-    groups = {scene: [common.mapping(opts, scene, seed) for seed in opts.seeds] for scene in SCENES}
-    if opts.sequence:
-        real = common.sequence_mapping(opts)
-        groups[real.folder.split("/")[-1]] = [real]
+    groups = common.mappings(opts, SCENES)
     runs = [run for group in groups.values() for run in group]
     common.execute(runs, opts)
     plot(opts, groups)

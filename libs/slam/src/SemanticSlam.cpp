@@ -180,7 +180,7 @@ void SemanticSlam::remember(
 		for (AssociationRecord& record : records)
 			record.object = record.firstObject = object->second;
 		associations_.insert(associations_.end(), records.begin(), records.end());
-		records.clear();
+		unassociated_.erase(t.track);
 	}
 }
 
