@@ -1,48 +1,19 @@
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-#include <mrpt/obs/CObservation3DRangeScan.h>
 #include <mrpt/obs/CObservationIMU.h>
-#include <semloop/observations/RawlogReader.h>
 #include <semloop/observations/RgbdFrame.h>
 #include <semloop/observations/Trajectory.h>
 #include <semloop/observations/UnixTime.h>
-#include <sys/wait.h>
 
-#include <cstdlib>
-#include <filesystem>
-#include <opencv2/core.hpp>
-#include <opencv2/imgcodecs.hpp>
 #include <optional>
 
-#include "TemporaryFolder.h"
+#include "Tum2RawlogFixture.h"
 
-using mrpt::obs::CObservation3DRangeScan;
-using semloop::formatUnixTime;
-using testing::AllOf;
-using testing::HasSubstr;
-using testing::Not;
-
+namespace semloop::test
+{
 namespace
 {
-namespace fs = std::filesystem;
-
-const cv::Size kSize(640, 480);
-
-cv::Mat depthImage(int seed)
-{
-	cv::Mat depth(kSize, CV_16UC1);
-	cv::RNG(uint64_t(seed)).fill(depth, cv::RNG::UNIFORM, 0, 65536);
-	depth.at<uint16_t>(0, 0) = 0;
-	depth.at<uint16_t>(479, 639) = 65535;
-	return depth;
-}
-
-cv::Mat colorImage(int seed)
-{
-	cv::Mat color(kSize, CV_8UC3);
-	cv::RNG(uint64_t(seed)).fill(color, cv::RNG::UNIFORM, 0, 256);
-	return color;
-}
+using ::testing::AllOf;
+using ::testing::HasSubstr;
+using ::testing::Not;
 
 bool same(const cv::Mat& a, const cv::Mat& b)
 {
@@ -58,83 +29,6 @@ cv::Mat storedDepth(const CObservation3DRangeScan& scan)
 		const_cast<uint16_t*>(scan.rangeImage.data()));
 	return view.clone();
 }
-
-class Tum2Rawlog : public testing::Test
-{
-protected:
-	/** Two pairs, a colour and a depth image without partner, accelerations around them. */
-	Tum2Rawlog()
-	{
-		fs::create_directories(sequence_ / "rgb");
-		fs::create_directories(sequence_ / "depth");
-		cv::imwrite((sequence_ / "rgb/a.jpg").string(), colorImage(1));
-		cv::imwrite((sequence_ / "rgb/b.png").string(), colorImage(2));
-		cv::imwrite((sequence_ / "rgb/lone.png").string(), colorImage(3));
-		cv::imwrite((sequence_ / "depth/a.png").string(), depthImage(1));
-		cv::imwrite((sequence_ / "depth/b.png").string(), depthImage(2));
-		cv::imwrite((sequence_ / "depth/lone.png").string(), depthImage(3));
-		write("rgb.txt", "# colour\n10.000001 rgb/a.jpg\n10.033 rgb/b.png\n10.066 rgb/lone.png\n");
-		write(
-			"depth.txt",
-			"# depth\n10.005 depth/a.png\n10.017 depth/lone.png\n10.032 depth/b.png\n");
-		write("groundtruth.txt", "# t\n9.9 1 2 3 0 0 0 1\n10.1 1 2 4 0 0 0 1\n");
-		write("accelerometer.txt", "9.5 0.1 9.7 -0.5\n10.02 0.2 9.6 -0.4\n10.9 0.3 9.5 -0.3\n");
-	}
-
-	void write(const std::string& name, const std::string& text) const
-	{
-		folder_.write("rgbd_dataset_freiburg1_test/" + name, text);
-	}
-
-	/** Exit code; what was printed is in out_ and err_. */
-	int run(const std::string& options = "")
-	{
-		return runWith("'" + sequence_.string() + "' '" + rawlog_ + "' " + options);
-	}
-	int runWith(const std::string& arguments)
-	{
-		const std::string command = "'" SEMLOOP_BINARY_DIR "/bin/tum2rawlog' " + arguments +
-									" > '" + folder_.file("out") + "' 2> '" + folder_.file("err") +
-									"'";
-		const int status = std::system(command.c_str());
-		out_ = semloop::readBytes(folder_.file("out"));
-		err_ = semloop::readBytes(folder_.file("err"));
-		return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
-	}
-
-	/** Runs, and expects exit code 1 with one line that says all this. */
-	void expectFailure(const std::vector<std::string>& saying, const std::string& options = "")
-	{
-		EXPECT_EQ(run(options), 1) << err_;
-		EXPECT_EQ(std::count(err_.begin(), err_.end(), '\n'), 1) << err_;
-		for (const auto& words : saying) EXPECT_THAT(err_, HasSubstr(words));
-		EXPECT_FALSE(fs::exists(rawlog_));
-	}
-
-	std::vector<mrpt::obs::CObservation::Ptr> readAll() const
-	{
-		semloop::RawlogReader reader(rawlog_);
-		std::vector<mrpt::obs::CObservation::Ptr> all;
-		while (const auto observation = reader.next()) all.push_back(observation);
-		return all;
-	}
-
-	std::vector<CObservation3DRangeScan::Ptr> readScans() const
-	{
-		std::vector<CObservation3DRangeScan::Ptr> scans;
-		for (const auto& observation : readAll())
-			if (auto scan = std::dynamic_pointer_cast<CObservation3DRangeScan>(observation))
-				scans.push_back(scan);
-		return scans;
-	}
-
-	const semloop::TemporaryFolder folder_;
-	const fs::path sequence_ = folder_.path() / "rgbd_dataset_freiburg1_test";
-	const std::string rawlog_ = folder_.file("x.rawlog");
-	std::string out_, err_;
-};
-
-}  // namespace
 
 TEST_F(Tum2Rawlog, PairsOneToOneByNearestTimeAndKeepsTheTimesOfColour)
 {
@@ -166,10 +60,10 @@ TEST_F(Tum2Rawlog, DepthIsThePngsBitByBit)
 TEST_F(Tum2Rawlog, ColourFilesAreCopiedByteByByte)
 {
 	ASSERT_EQ(run(), 0) << err_;
-	const auto bytes = [](const fs::path& path) { return semloop::readBytes(path.string()); };
+	const auto bytes = [](const fs::path& path) { return readBytes(path.string()); };
 	EXPECT_EQ(bytes(folder_.path() / "x_Images/color_000000.jpg"), bytes(sequence_ / "rgb/a.jpg"));
 	EXPECT_EQ(bytes(folder_.path() / "x_Images/color_000001.png"), bytes(sequence_ / "rgb/b.png"));
-	EXPECT_TRUE(same(semloop::rgbdFrameFrom(*readScans()[1]).color, colorImage(2)));
+	EXPECT_TRUE(same(rgbdFrameFrom(*readScans()[1]).color, colorImage(2)));
 }
 
 TEST_F(Tum2Rawlog, EmbeddedImagesAreLosslessAndNeedNoFolder)
@@ -180,7 +74,7 @@ TEST_F(Tum2Rawlog, EmbeddedImagesAreLosslessAndNeedNoFolder)
 	const auto scans = readScans();
 	ASSERT_EQ(scans.size(), 2u);
 	EXPECT_TRUE(same(storedDepth(*scans[1]), depthImage(2)));
-	EXPECT_TRUE(same(semloop::rgbdFrameFrom(*scans[1]).color, colorImage(2)));
+	EXPECT_TRUE(same(rgbdFrameFrom(*scans[1]).color, colorImage(2)));
 }
 
 TEST_F(Tum2Rawlog, ObservationsAreInOrderOfTimeAndGravityPointsUp)
@@ -203,7 +97,7 @@ TEST_F(Tum2Rawlog, ObservationsAreInOrderOfTimeAndGravityPointsUp)
 TEST_F(Tum2Rawlog, GroundTruthIsWrittenBeside)
 {
 	ASSERT_EQ(run(), 0) << err_;
-	const auto trajectory = semloop::readTumTrajectory(folder_.file("x_groundtruth.tum"));
+	const auto trajectory = readTumTrajectory(folder_.file("x_groundtruth.tum"));
 	ASSERT_EQ(trajectory.size(), 2u);
 	EXPECT_EQ(trajectory[1].pose.z(), 4);
 }
@@ -220,9 +114,9 @@ TEST_F(Tum2Rawlog, GroundTruthAndAccelerationsMayBeMissing)
 TEST_F(Tum2Rawlog, TheSameSequenceGivesTheSameBytes)
 {
 	ASSERT_EQ(run(), 0) << err_;
-	const auto first = semloop::readBytes(rawlog_);
+	const auto first = readBytes(rawlog_);
 	ASSERT_EQ(run(), 0) << err_;
-	EXPECT_EQ(semloop::readBytes(rawlog_), first);
+	EXPECT_EQ(readBytes(rawlog_), first);
 }
 
 TEST_F(Tum2Rawlog, TheFoldersNameTellsTheCamera)
@@ -277,83 +171,6 @@ TEST_F(Tum2Rawlog, WhatCalibrationProgramsWriteComesBackAsItWas)
 	EXPECT_EQ(readScans()[0]->cameraParams.dist, camera.dist);
 }
 
-TEST_F(Tum2Rawlog, WrongUsageExitsWith2)
-{
-	for (const std::string options :
-		 {"--camera fr9", "--max-time-difference -1", "--max-time-difference x", "--no-such-option",
-		  "--max-time-difference nan"})
-	{
-		EXPECT_EQ(run(options), 2) << options;
-		EXPECT_EQ(std::count(err_.begin(), err_.end(), '\n'), 1) << err_;
-	}
-	EXPECT_EQ(runWith("'" + sequence_.string() + "'"), 2);
-	const auto noCamera = folder_.write("bad.ini", "[A]\nfx = 3\n");
-	EXPECT_EQ(run("--camera '" + noCamera + "'"), 2);
-	EXPECT_THAT(err_, HasSubstr(noCamera));
-	EXPECT_EQ(runWith("--help"), 0);
-	EXPECT_THAT(out_, HasSubstr("--embed"));
-}
-
-TEST_F(Tum2Rawlog, AMissingFolderOrListIsNamed)
-{
-	fs::remove(sequence_ / "depth.txt");
-	expectFailure({"depth.txt", "not there", "TUM RGB-D"});
-	fs::remove(sequence_ / "rgb.txt");
-	expectFailure({"rgb.txt"});
-	EXPECT_EQ(runWith("/nonexistent '" + rawlog_ + "'"), 1);
-	EXPECT_THAT(err_, HasSubstr("/nonexistent: no such folder"));
-	EXPECT_EQ(std::count(err_.begin(), err_.end(), '\n'), 1) << err_;
-}
-
-TEST_F(Tum2Rawlog, ADepthImageOf8BitsIsNamed)
-{
-	cv::imwrite((sequence_ / "depth/b.png").string(), cv::Mat(kSize, CV_8UC1, cv::Scalar(9)));
-	expectFailure({"depth/b.png", "8 bits"});
-}
-
-TEST_F(Tum2Rawlog, AnImageOfAnotherSizeIsNamed)
-{
-	cv::imwrite((sequence_ / "rgb/b.png").string(), cv::Mat(240, 320, CV_8UC3, cv::Scalar(9)));
-	expectFailure({"rgb/b.png", "320x240", "640x480"});
-}
-
-TEST_F(Tum2Rawlog, AMissingOrDamagedImageIsNamed)
-{
-	const auto path = (sequence_ / "rgb/a.jpg").string();
-	const auto bytes = semloop::readBytes(path);
-	write("rgb/a.jpg", bytes.substr(0, bytes.size() / 2));
-	expectFailure({path, "cut"});
-	fs::remove(path);
-	expectFailure({path, "missing"});
-}
-
-TEST_F(Tum2Rawlog, ABadLineIsNamedWithItsNumber)
-{
-	write("depth.txt", "# depth\n10.005 depth/a.png\n10.01\n");
-	expectFailure({"depth.txt:3: 1 columns"});
-	write("depth.txt", "yesterday depth/a.png\n");
-	expectFailure({"depth.txt:1: 'yesterday'"});
-	write("depth.txt", "10.005 depth/a.png\n10.032 depth/b.png\n");
-	write("accelerometer.txt", "9.5 0.1 9.7 -0.5\n\n9.6 0.1 nan -0.5\n");
-	expectFailure({"accelerometer.txt:3: 'nan'"});
-	write("accelerometer.txt", "");
-	write("groundtruth.txt", "1 2 3\n");
-	expectFailure({"groundtruth.txt:1: 3 columns"});
-}
-
-TEST_F(Tum2Rawlog, NoPairWithinTheTimeDifferenceIsTold)
-{
-	expectFailure({"--max-time-difference"}, "--max-time-difference 0.0001");
-	write("rgb.txt", "# nothing\n");
-	expectFailure({"rgb.txt", "no image"});
-}
-
-TEST_F(Tum2Rawlog, AnUnwritablePlaceIsTold)
-{
-	EXPECT_EQ(runWith("'" + sequence_.string() + "' /nonexistent/x.rawlog"), 1);
-	EXPECT_THAT(err_, AllOf(HasSubstr("/nonexistent/x"), HasSubstr("cannot be written")));
-}
-
 TEST_F(Tum2Rawlog, ARealSequenceKeepsItsDepth)
 {
 	const char* const data = std::getenv("SEMLOOP_DATA");
@@ -363,7 +180,7 @@ TEST_F(Tum2Rawlog, ARealSequenceKeepsItsDepth)
 	{
 		fs::remove_all(sequence_ / name);
 		fs::create_directory_symlink(fs::absolute(desk / name), sequence_ / name);
-		std::string head = semloop::readBytes((desk / (name + ".txt")).string());
+		std::string head = readBytes((desk / (name + ".txt")).string());
 		std::size_t end = 0;
 		for (int line = 0; line < 40; line++) end = head.find('\n', end) + 1;
 		write(name + ".txt", head.substr(0, end));
@@ -377,12 +194,14 @@ TEST_F(Tum2Rawlog, ARealSequenceKeepsItsDepth)
 		bool found = false;  // the depth image's own name is not kept
 		for (const auto& file : fs::directory_iterator(sequence_ / "depth"))
 		{
-			const auto time = semloop::parseUnixTime(file.path().stem().string()).value();
+			const auto time = parseUnixTime(file.path().stem().string()).value();
 			if (std::chrono::abs(time - scans[i]->timestamp) > std::chrono::milliseconds(20))
 				continue;
 			found = found || same(stored, cv::imread(file.path().string(), cv::IMREAD_UNCHANGED));
 		}
 		EXPECT_TRUE(found) << i;
-		EXPECT_GT(semloop::countValidDepth(semloop::rgbdFrameFrom(*scans[i])), 100'000);
+		EXPECT_GT(countValidDepth(rgbdFrameFrom(*scans[i])), 100'000);
 	}
 }
+}  // namespace
+}  // namespace semloop::test

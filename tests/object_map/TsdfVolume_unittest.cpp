@@ -1,66 +1,14 @@
 #include <gtest/gtest.h>
-#include <mrpt/io/CMemoryStream.h>
-#include <mrpt/serialization/CArchive.h>
 #include <semloop/config/Error.h>
 #include <semloop/object_map/TsdfVolume.h>
 
 #include <limits>
 
-#include "AnalyticScene.h"
+#include "TsdfFixtures.h"
 
 using namespace semloop;
 using namespace semloop::testing;
 using Eigen::Vector3d;
-
-namespace
-{
-constexpr double radius = 0.2, voxel = 0.01;
-
-TsdfVolume sphereFromAllAround()
-{
-	TsdfVolume volume(options(voxel));
-	for (const auto& pose : posesAllAround(1.0)) fuse(volume, {sphere(radius)}, pose);
-	return volume;
-}
-
-Vector3d eigen(const mrpt::math::TPoint3Df& p)
-{
-	return {p.x, p.y, p.z};
-}
-
-/** Root mean square and largest distance of the surface points to the sphere [m]. */
-std::pair<double, double> sphereError(
-	const std::vector<SurfacePoint>& points, const Vector3d& centre = Vector3d::Zero())
-{
-	double sum = 0, largest = 0;
-	for (const auto& point : points)
-	{
-		const double e = std::abs((eigen(point.position) - centre).norm() - radius);
-		sum += e * e;
-		largest = std::max(largest, e);
-	}
-	return {std::sqrt(sum / static_cast<double>(points.size())), largest};
-}
-
-std::vector<uint8_t> bytesOf(const TsdfVolume& volume)
-{
-	mrpt::io::CMemoryStream stream;
-	auto archive = mrpt::serialization::archiveFrom(stream);
-	volume.serializeTo(archive);
-	const auto* const data = static_cast<const uint8_t*>(stream.getRawBufferData());
-	return {data, data + stream.getTotalBytesCount()};
-}
-
-TsdfVolume volumeOf(const std::vector<uint8_t>& bytes)
-{
-	mrpt::io::CMemoryStream stream;
-	stream.assignMemoryNotOwn(bytes.data(), bytes.size());
-	auto archive = mrpt::serialization::archiveFrom(stream);
-	TsdfVolume volume;
-	volume.serializeFrom(archive);
-	return volume;
-}
-}  // namespace
 
 TEST(TsdfVolume, AnEmptyVolumeHasNothing)
 {
@@ -332,104 +280,4 @@ TEST(TsdfVolume, ColourIsThatOfTheObject)
 		EXPECT_EQ(point.color.G, 100);
 		EXPECT_EQ(point.color.B, 100);
 	}
-}
-
-TEST(TsdfVolume, MergingTwoHalvesGivesTheWhole)
-{
-	TsdfVolume first(options(voxel)), second(options(voxel)), all(options(voxel));
-	const auto poses = posesAllAround(1.0);
-	for (std::size_t i = 0; i < poses.size(); ++i)
-	{
-		fuse(i % 2 ? first : second, {sphere(radius)}, poses[i]);
-		fuse(all, {sphere(radius)}, poses[i]);
-	}
-	first.merge(second, {});
-	const auto merged = sphereError(first.surface());
-	EXPECT_LT(merged.first, 0.2 * voxel);
-	EXPECT_LT(merged.second, 0.8 * voxel);
-	EXPECT_NEAR(
-		static_cast<double>(first.surface().size()), static_cast<double>(all.surface().size()), 60);
-}
-
-TEST(TsdfVolume, MergingPutsTheOtherVolumeWhereItStands)
-{
-	const auto other = sphereFromAllAround();
-	TsdfVolume volume(options(0.012));
-	const mrpt::poses::CPose3D T(0.3, -0.1, 0.05, 0.5, 0.2, -0.4);
-	volume.merge(other, T);
-	const auto [rms, largest] = sphereError(volume.surface(), {0.3, -0.1, 0.05});
-	EXPECT_LT(rms, 0.15 * voxel);
-	EXPECT_LT(largest, voxel);
-	const auto bounds = volume.boundingBox();
-	ASSERT_TRUE(bounds.has_value());
-	EXPECT_NEAR(bounds->min.x, 0.3 - radius, 1.5 * voxel);
-	EXPECT_NEAR(bounds->max.z, 0.05 + radius, 1.5 * voxel);
-}
-
-TEST(TsdfVolume, MergingWithItselfOrWithNothingKeepsTheSurface)
-{
-	auto volume = sphereFromAllAround();
-	const auto before = volume.surface();
-	volume.merge(TsdfVolume(options(voxel)), {});
-	EXPECT_EQ(volume.surface().size(), before.size());
-	volume.merge(volume, {});
-	const auto after = volume.surface();
-	ASSERT_EQ(after.size(), before.size());
-	for (std::size_t i = 0; i < after.size(); ++i)
-		EXPECT_LT((eigen(after[i].position) - eigen(before[i].position)).norm(), 1e-4);
-}
-
-TEST(TsdfVolume, SerialisationIsLossless)
-{
-	const auto volume = sphereFromAllAround();
-	const auto bytes = bytesOf(volume);
-	auto copy = volumeOf(bytes);
-	EXPECT_EQ(bytesOf(copy), bytes);
-	EXPECT_EQ(copy.blockCount(), volume.blockCount());
-	EXPECT_EQ(copy.options().voxelSize, volume.options().voxelSize);
-	const auto a = volume.surface(), b = copy.surface();
-	ASSERT_EQ(a.size(), b.size());
-	for (std::size_t i = 0; i < a.size(); ++i)
-	{
-		EXPECT_EQ(a[i].position, b[i].position);
-		EXPECT_EQ(a[i].color.R, b[i].color.R);
-	}
-	EXPECT_EQ(copy.boundingBox()->min, volume.boundingBox()->min);
-
-	// Both go on alike.
-	auto original = volume;
-	fuse(original, {sphere(radius)}, lookAt({0.9, 0.2, 0.1}));
-	fuse(copy, {sphere(radius)}, lookAt({0.9, 0.2, 0.1}));
-	EXPECT_EQ(bytesOf(copy), bytesOf(original));
-}
-
-TEST(TsdfVolume, DamagedFilesAreRefusedAndLeaveTheVolumeAlone)
-{
-	const auto good = bytesOf(sphereFromAllAround());
-	const auto refuses = [&](std::size_t at, uint8_t value)
-	{
-		auto bytes = good;
-		bytes.at(at) = value;
-		EXPECT_THROW(volumeOf(bytes), InputError) << at;
-	};
-	refuses(0, 9);                     // version
-	refuses(8, 0xFF);                  // sign of the voxel size (little endian, after the version)
-	refuses(1 + 3 * 8 + 3, 0xFF);      // sign of maxBlocks
-	refuses(1 + 3 * 8 + 4 + 3, 0xFF);  // number of blocks
-	refuses(1 + 3 * 8 + 8 + 1, 0x70);  // first block's x
-	refuses(1 + 3 * 8 + 8 + 6 + 64 + 3, 0x7F);  // exponent of the first distance
-
-	auto cut = good;
-	cut.resize(good.size() / 2);
-	auto volume = sphereFromAllAround();
-	mrpt::io::CMemoryStream stream;
-	stream.assignMemoryNotOwn(cut.data(), cut.size());
-	auto archive = mrpt::serialization::archiveFrom(stream);
-	EXPECT_ANY_THROW(volume.serializeFrom(archive));
-	EXPECT_EQ(bytesOf(volume), good);
-}
-
-TEST(TsdfVolume, TheSameFramesGiveTheSameBytes)
-{
-	EXPECT_EQ(bytesOf(sphereFromAllAround()), bytesOf(sphereFromAllAround()));
 }

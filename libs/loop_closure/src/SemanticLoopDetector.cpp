@@ -24,15 +24,6 @@ using Decision = LoopVerdict::Decision;
 constexpr const char* kMatcherSection = "graph_matching";
 constexpr const char* kAlignerSection = "alignment";
 
-/** How far the correction moves the middle of the query [m]. */
-double driftOf(const mrpt::poses::CPose3D& T_target_query, const SemanticGraph& query)
-{
-	mrpt::math::TPoint3D centroid;
-	for (const auto& vertex : query.vertices) centroid += vertex.position;
-	centroid *= 1.0 / static_cast<double>(query.vertices.size());
-	return T_target_query.composePoint(centroid).distanceTo(centroid);
-}
-
 /** Neighbours that were taken for each other fit the centres, not the surfaces of the others. */
 void dropWhatTheSurfacesRefute(
 	const CObjectMap& map, const GeometricVerificationOptions& options, LoopVerdict& verdict)
@@ -82,9 +73,6 @@ void SemanticLoopDetectorOptions::describe(OptionFields& fields)
 	fields.number(
 		"edge_length_tolerance", edgeLengthTolerance, 0, 100,
 		"difference of the lengths of a matched edge [m]");
-	fields.number(
-		"max_drift", maxDrift, 0, 1e6,
-		"larger corrections, at the query's centroid, are rejected; 0: no limit [m]");
 	verification.describe(fields);
 }
 
@@ -142,12 +130,6 @@ LoopVerdict SemanticLoopDetector::detect(
 		return verdict;
 	}
 
-	const double drift = driftOf(check.T_target_query, query);
-	if (options.maxDrift > 0 && drift > options.maxDrift)
-		return reject(
-			verdict, mrpt::format(
-						 "the correction of %.2f m is larger than the %.2f m allowed", drift,
-						 options.maxDrift));
 	verdict.decision = Decision::Accepted;
 	return verdict;
 }

@@ -15,7 +15,6 @@ struct SemanticLoopDetectorOptions : Options
 	int minObservations = 5;    //!< objects that were seen less often stay out of both graphs
 	double minEdgeShare = 0.5;  //!< Sec. IV-B
 	double edgeLengthTolerance = 0.5;  //!< of a matched edge [m]
-	double maxDrift = 0.0;             //!< larger corrections are rejected; 0: no limit [m]
 	GeometricVerificationOptions verification;
 
 protected:
@@ -27,10 +26,9 @@ protected:
  *  1. graphs of the query's and of the target's objects;
  *  2. correspondences (GraphMatcher);
  *  3. at least minEdgeShare of the query's edges are matched;
- *  4. the centres fit one rigid motion (verifyGeometry), and no other place fits as well, which is
- *     asked of the whole target before the drift is looked at: a rival is a rival wherever it is;
- *  5. the correction moves the query's centroid by at most maxDrift;
- *  6. the surfaces of the matched objects align (ObjectAligner).
+ *  4. the centres fit one rigid motion (verifyGeometry), and no other place fits as well: a rival
+ *     counts however far it is;
+ *  5. the surfaces of the matched objects align (ObjectAligner).
  *
  *  Query and target are in one (drifted) world, so T_target_query is the correction of the drift.
  *  Every rejection carries its numbers; a graph too large for the matcher is a rejection too. */
@@ -46,12 +44,12 @@ public:
 	void configure(
 		const mrpt::config::CConfigFileBase& config, const std::string& section) override;
 
-	/** Steps 1 to 6. */
+	/** Steps 1 to 5. */
 	LoopVerdict detect(
 		const CObjectMap& map, const std::set<ObjectId>& query,
 		const std::set<ObjectId>& target) const override;
 
-	/** Steps 2 to 5, for graphs without surfaces. */
+	/** Steps 2 to 4, for graphs without surfaces. */
 	LoopVerdict detect(const SemanticGraph& query, const SemanticGraph& target) const;
 
 	SemanticLoopDetectorOptions options;
