@@ -21,7 +21,7 @@ AssociationItem at(double x, const LabelScores& labelScores = kChair)
 {
 	AssociationItem item;
 	item.labelScores = &labelScores;
-	item.centre = mrpt::math::TPoint3D(x, 0, 2);
+	item.surface = SurfaceExtent{{x, 0, 2}, 0.1};
 	return item;
 }
 
@@ -33,7 +33,7 @@ public:
 	void setConfusionMatrix(ConfusionMatrix) override {}
 	double cost(const AssociationItem& landmark, const AssociationItem& detection) const override
 	{
-		return std::abs(landmark.centre->x - detection.centre->x);
+		return std::abs(landmark.surface->centre.x - detection.surface->centre.x);
 	}
 	mrpt::rtti::CObject* clone() const override { return new CentreCost(*this); }
 };
@@ -105,7 +105,7 @@ TEST(NearestNeighbourAssociator, PassesOverItemsWithoutACentreOrALabel)
 	const NearestNeighbourAssociator associator;
 	const LabelScores none;
 	auto unknown = at(0);
-	unknown.centre.reset();
+	unknown.surface.reset();
 	EXPECT_TRUE(associator.associate({unknown}, {at(0)}).matches.empty());
 	EXPECT_TRUE(associator.associate({at(0)}, {unknown}).matches.empty());
 	EXPECT_TRUE(associator.associate({at(0, none)}, {at(0, none)}).matches.empty());

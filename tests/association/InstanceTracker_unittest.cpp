@@ -114,6 +114,26 @@ TEST_F(Tracking, MovesTheMaskByTheOdometry)
 	EXPECT_EQ(second[0].observations, 2);
 }
 
+TEST_F(Tracking, AnErrorOfTheOdometryThatAllInstancesShareBreaksNoTrack)
+{
+	// 0.48 m to the right that never were would move all masks by 60 px: off themselves.
+	const mrpt::poses::CPose3D imagined(0.48, 0, 0, 0, 0, 0);
+	const std::vector<Instance> instances{
+		instanceAt({90, 20, 50, 60}), instanceAt({200, 30, 50, 60}, 1),
+		instanceAt({100, 150, 50, 60}, 1), instanceAt({220, 160, 50, 60})};
+	const auto first = track(instances);
+	const auto second =
+		tracker_.track(frame_, seen(std::vector(instances)), imagined, PoseSigma{0.4, 0.05});
+	for (std::size_t i = 0; i < instances.size(); ++i)
+		EXPECT_EQ(second[i].track, first[i].track) << i;
+	EXPECT_NEAR(tracker_.registration().T_seen_expected.x(), 0.48, 0.05);
+
+	// An odometry that is sure of itself is believed.
+	const auto third = tracker_.track(frame_, seen(std::vector(instances)), imagined, PoseSigma());
+	for (std::size_t i = 0; i < instances.size(); ++i)
+		EXPECT_NE(third[i].track, first[i].track) << i;
+}
+
 TEST_F(Tracking, GoesOnMovingATrackThatIsNotSeen)
 {
 	const auto first = track({instanceAt(kRight)});

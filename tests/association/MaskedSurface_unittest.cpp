@@ -43,10 +43,10 @@ TEST(MaskedSurface, HasItsCentreWhereTheMaskAndTheDepthSay)
 {
 	// 50 px right of the principal point at 2 m and f = 250: 0.4 m.
 	const MaskedSurface surface(disc(210, 120, 30), plane(2), camera());
-	ASSERT_TRUE(surface.centre());
-	EXPECT_NEAR(surface.centre()->x, 0.4, 0.01);
-	EXPECT_NEAR(surface.centre()->y, 0, 0.01);
-	EXPECT_NEAR(surface.centre()->z, 2, 1e-6);
+	ASSERT_TRUE(surface.extent());
+	EXPECT_NEAR(surface.extent()->centre.x, 0.4, 0.01);
+	EXPECT_NEAR(surface.extent()->centre.y, 0, 0.01);
+	EXPECT_NEAR(surface.extent()->centre.z, 2, 1e-6);
 }
 
 TEST(MaskedSurface, CentreIsNotMovedByAFewPixelsOfTheBackground)
@@ -54,8 +54,8 @@ TEST(MaskedSurface, CentreIsNotMovedByAFewPixelsOfTheBackground)
 	cv::Mat depth = plane(2);
 	depth.colRange(225, 320).setTo(9);
 	const MaskedSurface surface(disc(210, 120, 30), depth, camera());
-	EXPECT_NEAR(surface.centre()->z, 2, 1e-6);
-	EXPECT_NEAR(surface.centre()->x, 0.4, 0.1);
+	EXPECT_NEAR(surface.extent()->centre.z, 2, 1e-6);
+	EXPECT_NEAR(surface.extent()->centre.x, 0.4, 0.1);
 }
 
 TEST(MaskedSurface, SeenFromTheSamePlaceHasTheSameMask)
@@ -92,7 +92,7 @@ TEST(MaskedSurface, MovesWithTheCamera)
 	MaskedSurface surface(disc(150, 110, 40), plane(2), camera());
 	surface.transform(translation(-0.2, 0, 0));
 	EXPECT_GT(intersectionOverUnion(surface.project(camera()), disc(125, 110, 40)), 0.93);
-	EXPECT_NEAR(surface.centre()->x, (125 - 160) / 250.0 * 2, 0.01);
+	EXPECT_NEAR(surface.extent()->centre.x, (125 - 160) / 250.0 * 2, 0.01);
 }
 
 TEST(MaskedSurface, GrowsWithoutHolesWhenTheCameraApproaches)
@@ -124,7 +124,7 @@ TEST(MaskedSurface, KeepsItsShapeWhereDepthIsMissing)
 TEST(MaskedSurface, IsEmptyWithoutDepthOrMask)
 {
 	EXPECT_TRUE(MaskedSurface(disc(150, 110, 40), plane(0), camera()).empty());
-	EXPECT_FALSE(MaskedSurface(disc(150, 110, 40), plane(0), camera()).centre());
+	EXPECT_FALSE(MaskedSurface(disc(150, 110, 40), plane(0), camera()).extent());
 	EXPECT_TRUE(MaskedSurface(disc(150, 110, 40), cv::Mat(), camera()).empty());
 	EXPECT_TRUE(MaskedSurface(InstanceMask(kImage), plane(2), camera()).empty());
 	EXPECT_EQ(MaskedSurface().project(camera()), InstanceMask(kImage));

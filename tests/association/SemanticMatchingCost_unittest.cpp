@@ -24,9 +24,9 @@ struct Thing
 	InstanceMask mask;
 	LabelScores labelScores{{0, 1}};
 	Embeddings embeddings;
-	std::optional<mrpt::math::TPoint3D> centre;
+	std::optional<SurfaceExtent> surface;
 
-	AssociationItem item() const { return {&mask, &labelScores, &embeddings, centre}; }
+	AssociationItem item() const { return {&mask, &labelScores, &embeddings, surface}; }
 };
 
 SemanticMatchingCost perfectNetwork()
@@ -127,14 +127,14 @@ TEST(SemanticMatchingCost, ForbidsCentresThatAreTooFarApart)
 {
 	Thing a, b;
 	a.mask = b.mask = box(0, 0, 4, 2);
-	a.centre = {0, 0, 2};
-	b.centre = {0.3, 0.4, 2};
+	a.surface = SurfaceExtent{{0, 0, 2}, 0.1};
+	b.surface = SurfaceExtent{{0.3, 0.4, 2}, 0.1};
 	auto cost = perfectNetwork();
 	cost.options.maxCentreDistance = 0.51;
 	EXPECT_NEAR(costOf(cost, a, b), 0, 1e-12);
 	cost.options.maxCentreDistance = 0.49;
 	EXPECT_TRUE(std::isinf(costOf(cost, a, b)));
-	b.centre.reset();
+	b.surface.reset();
 	EXPECT_NEAR(costOf(cost, a, b), 0, 1e-12);
 }
 

@@ -143,6 +143,31 @@ TEST(SemanticSlam, WhatATrackSawBeforeItCountedIsItsObjectToo)
 		EXPECT_TRUE(detections.insert({a.frame, a.instance}).second) << "told twice";
 }
 
+TEST(SemanticSlam, WhatAllObjectsSayOutvotesNoisyPoses)
+{
+	const TemporaryFolder folder;
+	RunOptions options;
+	options.degrees = 240;
+	options.objects = 60;
+	const RecordedRun recorded = recordRun(folder, options);
+	const auto accuracyWith = [&](bool registration)
+	{
+		auto config = runConfiguration(recorded, 0);
+		config.write("odometry", "noise", 0.15);
+		config.write("frame_registration", "enabled", registration);
+		config.write("local_map", "length", 1000);
+		config.write("slam", "loop_every_frames", 1000);
+		const auto run = mapRawlog(recorded.rawlog, config, 2);
+		return *associationAccuracy(joinWithTruth(
+										run->slam->trajectory(), run->slam->associations(),
+										readTrueFrames(recorded.rawlog)))
+					.accuracy;
+	};
+	const double with = accuracyWith(true), without = accuracyWith(false);
+	EXPECT_GT(with, 0.95);
+	EXPECT_LT(without, with - 0.1);
+}
+
 TEST(SemanticSlam, WhatItWritesIsWhatTheEvaluationReads)
 {
 	const TemporaryFolder folder;

@@ -45,22 +45,25 @@ void InstanceTrackerOptions::describe(OptionFields& fields)
 
 AssociationItem InstanceTracker::Track::item() const
 {
-	return {&mask, &labelScores, &embeddings, surface.centre()};
+	return {&mask, &labelScores, &embeddings, surface.extent()};
 }
 
 InstanceTracker::InstanceTracker(
-	InstanceTrackerOptions options, std::shared_ptr<const MatchingCost> cost)
-	: options_(std::move(options)), cost_(std::move(cost))
+	InstanceTrackerOptions options, std::shared_ptr<const MatchingCost> cost,
+	FrameRegistrationOptions registration)
+	: options_(std::move(options)),
+	  cost_(std::move(cost)),
+	  registrationOptions_(std::move(registration))
 {
 	if (!cost_) throw UsageError("InstanceTracker: no matching cost; give one");
 }
 
 std::vector<TrackedInstance> InstanceTracker::track(
 	const RgbdFrame& frame, const CObservationInstances& observation,
-	const mrpt::poses::CPose3D& T_previous_camera)
+	const mrpt::poses::CPose3D& T_previous_camera, const PoseSigma& sigma)
 {
 	requireOneImageSize(frame, observation);
-	moveTracks(frame.camera, T_previous_camera);
+	moveTracks(frame.camera, -T_previous_camera);
 
 	std::vector<Track> seen;
 	std::vector<TrackedInstance> result;
@@ -74,6 +77,13 @@ std::vector<TrackedInstance> InstanceTracker::track(
 	std::vector<AssociationItem> known, detections;
 	for (const auto& track : tracks_) known.push_back(track.item());
 	for (const auto& track : seen) detections.push_back(track.item());
+	registered_ = registerFrame(known, detections, sigma, registrationOptions_);
+	if (registered_.pairs > 0)
+	{
+		moveTracks(frame.camera, registered_.T_seen_expected);
+		known.clear();
+		for (const auto& track : tracks_) known.push_back(track.item());
+	}
 	const auto matches =
 		solveAssignment(matchingCosts(*cost_, known, detections), options_.gate).matches;
 
@@ -97,9 +107,8 @@ std::vector<TrackedInstance> InstanceTracker::track(
 }
 
 void InstanceTracker::moveTracks(
-	const mrpt::img::TCamera& camera, const mrpt::poses::CPose3D& T_previous_camera)
+	const mrpt::img::TCamera& camera, const mrpt::poses::CPose3D& T_camera_previous)
 {
-	const mrpt::poses::CPose3D T_camera_previous = -T_previous_camera;
 	for (auto& track : tracks_)
 	{
 		if (track.surface.empty()) continue;

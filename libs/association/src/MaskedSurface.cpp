@@ -87,15 +87,16 @@ MaskedSurface::MaskedSurface(
 	gridStep_ = std::max(1, int(std::ceil(std::sqrt(pixelsPerSample))));
 	const auto pixels = gridPixels(mask, gridStep_);
 
-	std::vector<float> x, y, z;
+	std::vector<float> depths;
 	for (const auto& pixel : pixels)
-		if (const float d = depth.at<float>(pixel); isDepth(d)) z.push_back(d);
-	if (z.empty()) return;
-	const float medianDepth = median(z);
+		if (const float d = depth.at<float>(pixel); isDepth(d)) depths.push_back(d);
+	if (depths.empty()) return;
+	const float medianDepth = median(depths);
 
 	const float fx = float(camera.fx()), fy = float(camera.fy());
 	const float cx = float(camera.cx()), cy = float(camera.cy());
 	samples_.reserve(pixels.size());
+	std::vector<mrpt::math::TPoint3Df> measuredPoints;
 	for (const auto& pixel : pixels)
 	{
 		const float measured = depth.at<float>(pixel);
@@ -103,16 +104,14 @@ MaskedSurface::MaskedSurface(
 		const mrpt::math::TPoint3Df point(
 			(float(pixel.x) - cx) * d / fx, (float(pixel.y) - cy) * d / fy, d);
 		samples_.push_back({point, float(gridStep_) * d / fx});
-		if (!isDepth(measured)) continue;
-		x.push_back(point.x);
-		y.push_back(point.y);
+		if (isDepth(measured)) measuredPoints.push_back(point);
 	}
-	centre_ = mrpt::math::TPoint3D(median(x), median(y), medianDepth);
+	extent_ = extentOf(measuredPoints);
 }
 
 void MaskedSurface::transform(const mrpt::poses::CPose3D& T_new_old)
 {
-	if (centre_) centre_ = T_new_old.composePoint(*centre_);
+	if (extent_) extent_->centre = T_new_old.composePoint(extent_->centre);
 	const auto R = T_new_old.getRotationMatrix().cast_float();
 	const mrpt::math::TPoint3Df t(float(T_new_old.x()), float(T_new_old.y()), float(T_new_old.z()));
 	for (auto& sample : samples_)

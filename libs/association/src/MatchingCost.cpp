@@ -63,8 +63,8 @@ double SemanticMatchingCost::cost(
 	if (!confusion_)
 		throw UsageError(
 			"SemanticMatchingCost: no confusion matrix; call setConfusionMatrix() first");
-	if (landmark.centre && detection.centre &&
-		(*landmark.centre - *detection.centre).norm() > options.maxCentreDistance)
+	if (landmark.surface && detection.surface &&
+		(landmark.surface->centre - detection.surface->centre).norm() > options.maxCentreDistance)
 		return std::numeric_limits<double>::infinity();
 
 	const double p = labelProbability(*confusion_, *detection.labelScores, *landmark.labelScores);

@@ -18,11 +18,11 @@ namespace
 /** Infinite when the pair is not compatible. */
 double centreDistance(const AssociationItem& landmark, const AssociationItem& detection)
 {
-	if (!landmark.centre || !detection.centre || landmark.labelScores->empty() ||
+	if (!landmark.surface || !detection.surface || landmark.labelScores->empty() ||
 		detection.labelScores->empty() ||
 		landmark.labelScores->front().label != detection.labelScores->front().label)
 		return std::numeric_limits<double>::infinity();
-	return (*landmark.centre - *detection.centre).norm();
+	return (landmark.surface->centre - detection.surface->centre).norm();
 }
 }  // namespace
 

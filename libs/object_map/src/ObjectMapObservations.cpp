@@ -1,3 +1,4 @@
+#include <semloop/association/MaskedSurface.h>
 #include <semloop/association/Assignment.h>
 #include <semloop/association/MatchingCost.h>
 #include <semloop/association/ObjectAssociator.h>
@@ -64,17 +65,8 @@ CroppedFrame prepared(const CObservationInstances& observation)
 /** L of Eq. (3): a row for each predicted object, a column for each detection. */
 CostMatrix costMatrix(
 	const CObjectMap& map, const std::vector<PredictedObject>& predicted,
-	const CroppedFrame& cropped, const CPose3D& T_world_camera)
+	const CroppedFrame& cropped)
 {
-	std::vector<AssociationItem> landmarks(predicted.size());
-	for (std::size_t j = 0; j < predicted.size(); ++j)
-	{
-		const Object& object = map.object(predicted[j].id);
-		landmarks[j].mask = &predicted[j].prediction.mask;
-		landmarks[j].labelScores = &object.labelScores;
-		landmarks[j].embeddings = &object.embeddings;
-		landmarks[j].centre = T_world_camera.inverseComposePoint(object.centre());
-	}
 	std::vector<AssociationItem> detections(cropped.instances.size());
 	std::vector<std::vector<std::vector<float>>> embeddings(detections.size());
 	for (std::size_t k = 0; k < detections.size(); ++k)
@@ -84,14 +76,12 @@ CostMatrix costMatrix(
 		detections[k].mask = &instance.mask;
 		detections[k].labelScores = &instance.labelScores;
 		detections[k].embeddings = &embeddings[k];
-		if (const auto trimmed = trimMask(
-				instance.mask, cropped.frame.depth, cropped.frame.camera,
-				map.insertionOptions.minPixels, map.insertionOptions.maxDepth))
-			detections[k].centre = trimmed->centre();
+		detections[k].surface =
+			MaskedSurface(instance.mask, cropped.frame.depth, cropped.frame.camera).extent();
 	}
 	SemanticMatchingCost cost;
 	cost.setConfusionMatrix(ConfusionMatrix(map.labels(), kCorrectLabels));
-	return matchingCosts(cost, landmarks, detections);
+	return matchingCosts(cost, map.landmarks(predicted, cropped.frame.camera), detections);
 }
 }  // namespace
 
@@ -112,7 +102,7 @@ bool CObjectMap::internal_insertObservation(
 	const CPose3D T_world_camera = robotPose.value_or(CPose3D()) + cropped.frame.T_robot_camera;
 	const auto predicted = predict(cropped.frame.camera, T_world_camera, cropped.frame.depth);
 	const auto assignment = solveAssignment(
-		costMatrix(*this, predicted, cropped, T_world_camera), insertionOptions.gate);
+		costMatrix(*this, predicted, cropped), insertionOptions.gate);
 
 	std::set<ObjectId> seen;
 	std::vector<bool> isMatched(cropped.instances.size(), false);
@@ -140,7 +130,7 @@ double CObjectMap::internal_computeObservationLikelihood(
 	const CroppedFrame cropped = prepared(*instances);
 	const CPose3D T_world_camera = takenFrom + cropped.frame.T_robot_camera;
 	const auto predicted = predict(cropped.frame.camera, T_world_camera, cropped.frame.depth);
-	const CostMatrix cost = costMatrix(*this, predicted, cropped, T_world_camera);
+	const CostMatrix cost = costMatrix(*this, predicted, cropped);
 	double logLikelihood = 0;
 	for (Eigen::Index k = 0; k < Eigen::Index(cropped.instances.size()); ++k)
 	{

@@ -206,6 +206,19 @@ std::vector<PredictedObject> CObjectMap::predict(
 	return predicted;
 }
 
+std::vector<AssociationItem> CObjectMap::landmarks(
+	const std::vector<PredictedObject>& predicted, const TCamera& camera) const
+{
+	std::vector<AssociationItem> result;
+	for (const PredictedObject& p : predicted)
+	{
+		const Object& o = object(p.id);
+		result.push_back(
+			{&p.prediction.mask, &o.labelScores, &o.embeddings, p.prediction.extent(camera)});
+	}
+	return result;
+}
+
 void CObjectMap::updateExistence(
 	const std::vector<PredictedObject>& predicted, const RgbdFrame& frame,
 	const std::set<ObjectId>& associated)

@@ -119,6 +119,21 @@ InstanceMask maskOfHits(const cv::Mat& depth, const CastGrid& grid, const cv::Si
 
 }  // namespace
 
+std::optional<SurfaceExtent> ObjectPrediction::extent(const mrpt::img::TCamera& camera) const
+{
+	std::vector<mrpt::math::TPoint3Df> points;
+	for (int r = 0; r < depth.rows; ++r)
+		for (int c = 0; c < depth.cols; ++c)
+		{
+			const float z = depth.at<float>(r, c);
+			if (!(z > 0)) continue;
+			points.emplace_back(
+				static_cast<float>((box.x + c * stride - camera.cx()) / camera.fx()) * z,
+				static_cast<float>((box.y + r * stride - camera.cy()) / camera.fy()) * z, z);
+		}
+	return extentOf(points);
+}
+
 std::optional<ObjectPrediction> TsdfVolume::raycast(
 	const mrpt::img::TCamera& camera, const mrpt::poses::CPose3D& T_camera_object,
 	int maxSamples) const

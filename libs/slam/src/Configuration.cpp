@@ -44,9 +44,22 @@ std::string table(const char* section, const std::string& what, const Options& o
 const std::vector<std::string>& configurationSections()
 {
 	static const std::vector<std::string> sections = {
-		"modules",   "slam",           "segmentation",   "embedding",  "odometry",
-		"tracking",  "matching_cost",  "association",    "object_map", "object_map_maintenance",
-		"local_map", "loop_detection", "graph_matching", "alignment",  "pose_graph"};
+		"modules",
+		"slam",
+		"segmentation",
+		"embedding",
+		"odometry",
+		"tracking",
+		"matching_cost",
+		"association",
+		"frame_registration",
+		"object_map",
+		"object_map_maintenance",
+		"local_map",
+		"loop_detection",
+		"graph_matching",
+		"alignment",
+		"pose_graph"};
 	return sections;
 }
 
@@ -86,8 +99,10 @@ void SemanticSlam::makeModules(const mrpt::config::CConfigFileBase& config)
 
 	InstanceTrackerOptions tracking;
 	tracking.loadFromConfigFile(config, "tracking");
-	tracker_ = std::make_unique<InstanceTracker>(tracking, cost);
-	mapper_ = std::make_unique<ObjectMapper>(map_, associator, timings_);
+	FrameRegistrationOptions registration;
+	registration.loadFromConfigFile(config, "frame_registration");
+	tracker_ = std::make_unique<InstanceTracker>(tracking, cost, registration);
+	mapper_ = std::make_unique<ObjectMapper>(map_, associator, timings_, registration);
 	loopCloser_ = std::make_unique<LoopCloser>(map_, poseGraph_, detector, timings_);
 }
 

@@ -29,49 +29,49 @@ Detections detectionsOf(
 		if (!instance.embedding.empty()) embeddings.push_back(instance.embedding);
 		const MaskedSurface surface(instance.mask, frame.depth, frame.camera);
 		result.items.push_back(
-			{&instance.mask, &instance.labelScores, &embeddings, surface.centre()});
-	}
-	return result;
-}
-
-/** The objects in view; centre is that of the surface that should be visible, as a detection's is. */
-std::vector<AssociationItem> landmarksOf(
-	const CObjectMap& map, const std::vector<PredictedObject>& predicted,
-	const mrpt::poses::CPose3D& T_camera_world)
-{
-	std::vector<AssociationItem> result;
-	for (const PredictedObject& p : predicted)
-	{
-		const Object& object = map.object(p.id);
-		result.push_back(
-			{&p.prediction.mask, &object.labelScores, &object.embeddings,
-			 T_camera_world.composePoint(object.centre())});
+			{&instance.mask, &instance.labelScores, &embeddings, surface.extent()});
 	}
 	return result;
 }
 }  // namespace
 
 ObjectMapper::ObjectMapper(
-	CObjectMap::Ptr map, std::shared_ptr<const Associator> associator, StageTimings& timings)
-	: map_(std::move(map)), associator_(std::move(associator)), timings_(timings)
+	CObjectMap::Ptr map, std::shared_ptr<const Associator> associator, StageTimings& timings,
+	FrameRegistrationOptions registration)
+	: map_(std::move(map)),
+	  associator_(std::move(associator)),
+	  timings_(timings),
+	  registrationOptions_(std::move(registration))
 {
 }
 
 std::vector<ObjectObservation> ObjectMapper::update(
 	const RgbdFrame& frame, const CObservationInstances& observation,
-	const std::vector<TrackedInstance>& tracked, const mrpt::poses::CPose3D& T_world_camera,
-	const LocalMap& localMap)
+	const std::vector<TrackedInstance>& tracked, const mrpt::poses::CPose3D& T_world_expected,
+	const LocalMap& localMap, const PoseSigma& sigma)
 {
 	std::vector<TrackedInstance> confirmed;
 	for (const auto& t : tracked)
 		if (t.confirmed) confirmed.push_back(t);
 
-	std::vector<PredictedObject> predicted;
+	const Detections detections = detectionsOf(frame, observation, confirmed);
+	auto predicted = predict(frame, T_world_expected, localMap);
+	auto landmarks = map_->landmarks(predicted, frame.camera);
+	mrpt::poses::CPose3D T_world_camera = T_world_expected;
+	registered_ = registerFrame(landmarks, detections.items, sigma, registrationOptions_);
+	if (registered_.T_seen_expected != mrpt::poses::CPose3D())
 	{
-		const StageTimings::Scope timing(timings_, "prediction");
-		predicted = map_->predict(frame.camera, T_world_camera, frame.depth, localMap.objects());
+		T_world_camera = T_world_expected + (-registered_.T_seen_expected);
+		predicted = predict(frame, T_world_camera, localMap);
+		landmarks = map_->landmarks(predicted, frame.camera);
 	}
-	const auto objects = associate(frame, observation, confirmed, predicted, T_world_camera);
+
+	std::vector<std::optional<ObjectId>> objects(confirmed.size());
+	{
+		const StageTimings::Scope timing(timings_, "association");
+		for (const auto& [j, k] : associator_->associate(landmarks, detections.items).matches)
+			objects[k] = predicted[j].id;
+	}
 
 	const StageTimings::Scope timing(timings_, "fusion");
 	std::vector<ObjectObservation> seen;
@@ -89,19 +89,12 @@ std::vector<ObjectObservation> ObjectMapper::update(
 	return seen;
 }
 
-std::vector<std::optional<ObjectId>> ObjectMapper::associate(
-	const RgbdFrame& frame, const CObservationInstances& observation,
-	const std::vector<TrackedInstance>& confirmed, const std::vector<PredictedObject>& predicted,
-	const mrpt::poses::CPose3D& T_world_camera) const
+std::vector<PredictedObject> ObjectMapper::predict(
+	const RgbdFrame& frame, const mrpt::poses::CPose3D& T_world_camera,
+	const LocalMap& localMap) const
 {
-	const StageTimings::Scope timing(timings_, "association");
-	const Detections detections = detectionsOf(frame, observation, confirmed);
-	const auto landmarks = landmarksOf(*map_, predicted, -T_world_camera);
-
-	std::vector<std::optional<ObjectId>> result(confirmed.size());
-	for (const auto& [j, k] : associator_->associate(landmarks, detections.items).matches)
-		result[k] = predicted[j].id;
-	return result;
+	const StageTimings::Scope timing(timings_, "prediction");
+	return map_->predict(frame.camera, T_world_camera, frame.depth, localMap.objects());
 }
 
 std::optional<ObjectObservation> ObjectMapper::fuse(

@@ -37,7 +37,7 @@ void SemanticSlam::process(const SlamFrame& input)
 	}
 	addCamera(frame, odometry);
 	localMap_.advance(odometry.T_previous_camera);
-	T_segmented_camera_ = T_segmented_camera_ + odometry.T_previous_camera;
+	correction_.step(odometry);
 	if (!input.instances) return;
 	const CObservationInstances& instances = *input.instances;
 	adoptLabels(instances);
@@ -46,12 +46,16 @@ void SemanticSlam::process(const SlamFrame& input)
 	std::vector<TrackedInstance> tracked;
 	{
 		const StageTimings::Scope trackingTiming(timings_, "tracking");
-		tracked = tracker_->track(frame, instances, T_segmented_camera_);
+		tracked = tracker_->track(
+			frame, instances, correction_.T_previous_camera(), correction_.stepSigma());
+		correction_.track(tracker_->registration());
 	}
-	T_segmented_camera_ = CPose3D();
 
 	// Sec. III-B, Eq. (1)-(3): association with the map's objects, fusion into their volumes.
-	const auto seen = mapper_->update(frame, instances, tracked, cameraPose(), localMap_);
+	const auto seen =
+		mapper_->update(frame, instances, tracked, cameraPose(), localMap_, correction_.sigma());
+	correction_.localize(mapper_->registration());
+	poseGraph_->setNode(cameraNode(), cameraPose());
 	addObservations(seen);
 	remember(instances, tracked, seen);
 	map_->markCovisible(localMap_.objects());
@@ -188,9 +192,10 @@ std::vector<AssociationRecord> SemanticSlam::associations() const
 {
 	auto result = associations_;
 	for (AssociationRecord& record : result) record.object = mapper_->mergedInto(record.object);
-	std::sort(result.begin(), result.end(), [](const auto& a, const auto& b) {
-		return std::tie(a.frame, a.instance) < std::tie(b.frame, b.instance);
-	});
+	std::sort(
+		result.begin(), result.end(),
+		[](const auto& a, const auto& b)
+		{ return std::tie(a.frame, a.instance) < std::tie(b.frame, b.instance); });
 	return result;
 }
 
@@ -276,7 +281,8 @@ double SemanticSlam::driftSigmas(const LoopVerdict& verdict) const
 
 void SemanticSlam::followOptimizedCamera()
 {
-	T_world_odom_ = poseGraph_->pose(cameraNode()) + (-T_odom_camera_);
+	T_world_odom_ =
+		poseGraph_->pose(cameraNode()) + (-(T_odom_camera_ + correction_.T_odometry_camera()));
 }
 
 void SemanticSlam::finish()

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <mrpt/poses/CPose3D.h>
+#include <semloop/association/FrameRegistration.h>
 #include <semloop/association/MaskedSurface.h>
 #include <semloop/association/MatchingCost.h>
 #include <semloop/config/Options.h>
@@ -46,14 +47,18 @@ class InstanceTracker
 public:
 	/** Throws UsageError without a cost. */
 	explicit InstanceTracker(
-		InstanceTrackerOptions options, std::shared_ptr<const MatchingCost> cost);
+		InstanceTrackerOptions options, std::shared_ptr<const MatchingCost> cost,
+		FrameRegistrationOptions registration = {});
 
 	/** The frame and its instances (rectified, one image size), T_previous_camera since the last call.
 	 *  One entry per detection that is strong enough, in the observation's order. Throws InputError
 	 *  when the image sizes differ; an empty depth image means that there is no depth. */
 	std::vector<TrackedInstance> track(
 		const RgbdFrame& frame, const CObservationInstances& observation,
-		const mrpt::poses::CPose3D& T_previous_camera);
+		const mrpt::poses::CPose3D& T_previous_camera, const PoseSigma& sigma = {});
+
+	/** What the last frame's detections said about T_previous_camera. */
+	const FrameRegistration& registration() const { return registered_; }
 
 	std::size_t trackCount() const { return tracks_.size(); }
 
@@ -72,12 +77,14 @@ private:
 	};
 
 	void moveTracks(
-		const mrpt::img::TCamera& camera, const mrpt::poses::CPose3D& T_previous_camera);
+		const mrpt::img::TCamera& camera, const mrpt::poses::CPose3D& T_camera_previous);
 	static Track trackFrom(const Instance& instance, const RgbdFrame& frame);
 	void update(Track& track, Track seen);
 
 	InstanceTrackerOptions options_;
 	std::shared_ptr<const MatchingCost> cost_;
+	FrameRegistrationOptions registrationOptions_;
+	FrameRegistration registered_;
 	std::vector<Track> tracks_;
 	uint64_t nextId_ = 0;
 };

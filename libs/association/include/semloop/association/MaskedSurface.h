@@ -1,8 +1,8 @@
 #pragma once
 
 #include <mrpt/img/TCamera.h>
-#include <mrpt/math/TPoint3D.h>
 #include <mrpt/poses/CPose3D.h>
+#include <semloop/association/SurfaceExtent.h>
 #include <semloop/observations/InstanceMask.h>
 
 #include <opencv2/core/mat.hpp>
@@ -30,8 +30,8 @@ public:
 
 	bool empty() const { return samples_.empty(); }
 
-	/** Median, each coordinate by itself, of the points that have depth, in the camera's frame [m]. */
-	const std::optional<mrpt::math::TPoint3D>& centre() const { return centre_; }
+	/** Of the points that have depth, in the camera's frame. */
+	const std::optional<SurfaceExtent>& extent() const { return extent_; }
 
 	/** Takes the points to another camera's frame. */
 	void transform(const mrpt::poses::CPose3D& T_new_old);
@@ -49,7 +49,7 @@ private:
 	};
 
 	std::vector<Sample> samples_;
-	std::optional<mrpt::math::TPoint3D> centre_;
+	std::optional<SurfaceExtent> extent_;
 	int gridStep_ = 1;  //!< [px]
 };
 

@@ -1,9 +1,9 @@
 #pragma once
 
 #include <mrpt/config/CConfigFileBase.h>
-#include <mrpt/math/TPoint3D.h>
 #include <mrpt/rtti/CObject.h>
 #include <semloop/association/ConfusionMatrix.h>
+#include <semloop/association/SurfaceExtent.h>
 #include <semloop/config/Options.h>
 #include <semloop/observations/CObservationInstances.h>
 
@@ -23,7 +23,8 @@ struct AssociationItem
 	/** E_j, or the one e_k: each of unit length, all of one size (empty ones are passed over); may be
 	 *  null or empty */
 	const std::vector<std::vector<float>>* embeddings = nullptr;
-	std::optional<mrpt::math::TPoint3D> centre;  //!< in the camera's frame [m], when depth tells
+	/** What is, or should be, visible of it, in the camera's frame; empty when no depth tells. */
+	std::optional<SurfaceExtent> surface;
 };
 
 /** Cost of matching detection k to landmark j: a module ("the association's cost"). */

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <mrpt/maps/CMetricMap.h>
+#include <semloop/association/MatchingCost.h>
 #include <semloop/config/Options.h>
 #include <semloop/object_map/Object.h>
 #include <semloop/observations/CObservationInstances.h>
@@ -101,6 +102,10 @@ public:
 		const mrpt::img::TCamera& camera, const mrpt::poses::CPose3D& T_world_camera,
 		const cv::Mat& depth = {},
 		const std::optional<std::set<ObjectId>>& among = std::nullopt) const;
+	/** The predictions as Eq. (3) compares them with detections; they point to the map's data and to
+	 *  `predicted`. */
+	std::vector<AssociationItem> landmarks(
+		const std::vector<PredictedObject>& predicted, const mrpt::img::TCamera& camera) const;
 
 	/** Lowers the existence of objects that the depth image looks through, and raises that of the
 	 *  associated ones; log-odds, as in occupancy grids (H. Moravec and A. Elfes, ICRA 1985). An object

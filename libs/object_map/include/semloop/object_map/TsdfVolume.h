@@ -6,6 +6,7 @@
 #include <mrpt/math/TPoint3D.h>
 #include <mrpt/poses/CPose3D.h>
 #include <mrpt/serialization/CArchive.h>
+#include <semloop/association/SurfaceExtent.h>
 #include <semloop/object_map/TsdfBlocks.h>
 #include <semloop/observations/InstanceMask.h>
 #include <semloop/observations/RgbdFrame.h>
@@ -40,6 +41,9 @@ struct ObjectPrediction
 	cv::Rect box;       //!< part of the image that was cast, in pixels
 	int stride = 1;     //!< every stride-th pixel was cast
 	cv::Mat depth;      //!< CV_32FC1, one entry per cast pixel [m], 0 = no surface
+
+	/** As MaskedSurface has it of a detection; empty without surface. */
+	std::optional<SurfaceExtent> extent(const mrpt::img::TCamera& camera) const;
 };
 
 /** How one object is sampled. */

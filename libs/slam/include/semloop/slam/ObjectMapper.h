@@ -1,6 +1,7 @@
 #pragma once
 
 #include <semloop/association/Associator.h>
+#include <semloop/association/FrameRegistration.h>
 #include <semloop/association/InstanceTracker.h>
 #include <semloop/object_map/CObjectMap.h>
 #include <semloop/slam/LocalMap.h>
@@ -31,15 +32,19 @@ class ObjectMapper
 {
 public:
 	ObjectMapper(
-		CObjectMap::Ptr map, std::shared_ptr<const Associator> associator, StageTimings& timings);
+		CObjectMap::Ptr map, std::shared_ptr<const Associator> associator, StageTimings& timings,
+		FrameRegistrationOptions registration = {});
 
 	/** What went into the map, in the order of tracked; two tracks of one object, as when a mask was
 	 *  split, are both there. T_world_camera of the optical frame. Only objects of the local map are
 	 *  landmarks: the drift since others were seen may have put them where another one stands now. */
 	std::vector<ObjectObservation> update(
 		const RgbdFrame& frame, const CObservationInstances& observation,
-		const std::vector<TrackedInstance>& tracked, const mrpt::poses::CPose3D& T_world_camera,
-		const LocalMap& localMap);
+		const std::vector<TrackedInstance>& tracked, const mrpt::poses::CPose3D& T_world_expected,
+		const LocalMap& localMap, const PoseSigma& sigma = {});
+
+	/** What the last frame's detections said about T_world_expected. */
+	const FrameRegistration& registration() const { return registered_; }
 
 	/** Tracks and observations of the absorbed object belong to the kept one from now on. */
 	void merge(ObjectId kept, ObjectId absorbed);
@@ -48,12 +53,9 @@ public:
 	ObjectId mergedInto(ObjectId id) const;
 
 private:
-	/** Object of each detection, in the order of confirmed. */
-	std::vector<std::optional<ObjectId>> associate(
-		const RgbdFrame& frame, const CObservationInstances& observation,
-		const std::vector<TrackedInstance>& confirmed,
-		const std::vector<PredictedObject>& predicted,
-		const mrpt::poses::CPose3D& T_world_camera) const;
+	std::vector<PredictedObject> predict(
+		const RgbdFrame& frame, const mrpt::poses::CPose3D& T_world_camera,
+		const LocalMap& localMap) const;
 	/** Fuses the detection into its object, or makes one; empty when neither was possible. */
 	std::optional<ObjectObservation> fuse(
 		const RgbdFrame& frame, const Instance& instance, const TrackedInstance& tracked,
@@ -63,6 +65,8 @@ private:
 	CObjectMap::Ptr map_;
 	std::shared_ptr<const Associator> associator_;
 	StageTimings& timings_;
+	FrameRegistrationOptions registrationOptions_;
+	FrameRegistration registered_;
 	std::map<uint64_t, ObjectId> objectOfTrack_;
 	std::map<ObjectId, ObjectId> absorbedBy_;
 };

@@ -8,6 +8,7 @@
 #include <semloop/observations/Trajectory.h>
 #include <semloop/odometry/Odometry.h>
 #include <semloop/pose_graph/PoseGraph.h>
+#include <semloop/slam/CameraCorrection.h>
 #include <semloop/slam/DriftPrior.h>
 #include <semloop/slam/FrameSource.h>
 #include <semloop/slam/LocalMap.h>
@@ -85,7 +86,10 @@ private:
 	double driftSigmas(const LoopVerdict& verdict) const;
 	void followOptimizedCamera();
 
-	mrpt::poses::CPose3D cameraPose() const { return T_world_odom_ + T_odom_camera_; }
+	mrpt::poses::CPose3D cameraPose() const
+	{
+		return T_world_odom_ + T_odom_camera_ + correction_.T_odometry_camera();
+	}
 	NodeId cameraNode() const { return NodeId::camera(frameCount() - 1); }
 
 	mrpt::system::COutputLogger& logger_;
@@ -105,7 +109,7 @@ private:
 	mrpt::poses::CPose3D T_world_firstCamera_;
 	mrpt::poses::CPose3D T_world_odom_;  //!< follows the loop closures
 	mrpt::poses::CPose3D T_odom_camera_;
-	mrpt::poses::CPose3D T_segmented_camera_;  //!< motion since the last segmented frame
+	CameraCorrection correction_;              //!< of that, by the objects in view
 	std::optional<mrpt::math::TVector3D> up_;  //!< in the robot's frame, from the accelerometer
 	DriftPrior driftPrior_;
 	Trajectory odometryTrajectory_;

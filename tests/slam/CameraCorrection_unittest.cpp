@@ -1,0 +1,98 @@
+#include <gtest/gtest.h>
+#include <semloop/slam/CameraCorrection.h>
+
+#include <cmath>
+
+using namespace semloop;
+using mrpt::poses::CPose3D;
+
+namespace
+{
+OdometryEstimate step(const CPose3D& T_previous_camera, double sigma)
+{
+	OdometryEstimate estimate;
+	estimate.T_previous_camera = T_previous_camera;
+	estimate.covariance = sigma * sigma * Eigen::Matrix<double, 6, 6>::Identity();
+	return estimate;
+}
+
+FrameRegistration seen(const CPose3D& T_seen_expected, double sigma)
+{
+	return {T_seen_expected, {sigma, sigma}, 5};
+}
+
+const CPose3D kHere;
+}  // namespace
+
+TEST(CameraCorrection, IsNoneWithoutObjects)
+{
+	CameraCorrection correction;
+	for (int i = 0; i < 10; ++i)
+	{
+		correction.step(step(CPose3D(0.1, 0, 0, 0.2, 0, 0), 0.01));
+		correction.track({kHere, correction.stepSigma(), 0});
+		correction.localize({kHere, correction.sigma(), 0});
+	}
+	EXPECT_NEAR(correction.T_odometry_camera().norm(), 0, 1e-12);
+}
+
+TEST(CameraCorrection, CollectsTheStepsBetweenSegmentedFrames)
+{
+	CameraCorrection correction;
+	correction.step(step(CPose3D(1, 0, 0, M_PI / 2, 0, 0), 0.3));
+	correction.step(step(CPose3D(1, 0, 0, 0, 0, 0), 0.4));
+	EXPECT_NEAR(correction.T_previous_camera().x(), 1, 1e-12);
+	EXPECT_NEAR(correction.T_previous_camera().y(), 1, 1e-12);
+	EXPECT_NEAR(correction.stepSigma().translation, 0.5, 1e-12);
+	correction.track({});
+	EXPECT_EQ(correction.T_previous_camera(), kHere);
+	EXPECT_EQ(correction.stepSigma().rotation, 0);
+}
+
+TEST(CameraCorrection, WeighsWhatObjectsAndOdometrySay)
+{
+	// One pose of the odometry has a variance of 0.02 / 2, as the tracked objects: half way.
+	CameraCorrection correction;
+	correction.step(step(kHere, std::sqrt(0.02)));
+	correction.track(seen(CPose3D(-0.2, 0, 0, 0.4, 0, 0), 0.1));
+	const CPose3D expected = -CPose3D(-0.2, 0, 0, 0.4, 0, 0);
+	EXPECT_NEAR(correction.T_odometry_camera().x(), expected.x() / 2, 1e-9);
+	EXPECT_NEAR(correction.T_odometry_camera().y(), expected.y() / 2, 1e-9);
+	EXPECT_NEAR(correction.T_odometry_camera().yaw(), -0.2, 1e-9);
+	EXPECT_NEAR(correction.sigma().translation, 0.1 / std::sqrt(2), 1e-9);
+}
+
+TEST(CameraCorrection, FollowsAGoodOdometryWhateverTheObjectsSay)
+{
+	CameraCorrection correction;
+	correction.step(step(kHere, 0.001));
+	correction.track(seen(CPose3D(0.2, 0, 0, 0.1, 0, 0), 0.05));
+	EXPECT_LT(correction.T_odometry_camera().norm(), 1e-4);
+}
+
+TEST(CameraCorrection, FollowsTheObjectsWhenTheOdometryIsLost)
+{
+	CameraCorrection correction;
+	correction.step(step(kHere, 10));
+	correction.track(seen(CPose3D(0.2, 0, 0, 0, 0, 0), 0.05));
+	EXPECT_NEAR(correction.T_odometry_camera().x(), -0.2, 1e-4);
+	EXPECT_NEAR(correction.sigma().translation, 0.05, 1e-4);
+}
+
+TEST(CameraCorrection, TakesWhatTheMapSaysAsItIs)
+{
+	CameraCorrection correction;
+	correction.localize(seen(CPose3D(0.1, 0.2, 0.3, 0, 0, 0), 0.02));
+	EXPECT_NEAR(correction.T_odometry_camera().y(), -0.2, 1e-12);
+	EXPECT_EQ(correction.sigma().translation, 0.02);
+}
+
+TEST(CameraCorrection, TurnsWithTheCamera)
+{
+	// A metre to the camera's left in its old frame lies ahead after a quarter turn to the left.
+	CameraCorrection correction;
+	correction.localize(seen(CPose3D(0, -1, 0, 0, 0, 0), 0.02));
+	correction.step(step(CPose3D(0, 0, 0, M_PI / 2, 0, 0), 0.01));
+	EXPECT_NEAR(correction.T_odometry_camera().x(), 1, 1e-12);
+	EXPECT_NEAR(correction.T_odometry_camera().y(), 0, 1e-12);
+}
