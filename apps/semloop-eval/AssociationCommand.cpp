@@ -57,13 +57,18 @@ int associationCommand(int argc, char** argv)
 	TCLAP::ValueArg<int> minimumPixels(
 		"", "minimum-pixels", "true boxes with a smaller mask do not count (default 0)", false, 0,
 		"PIXELS", commandLine);
+	TCLAP::ValueArg<std::string> images(
+		"", "images",
+		"rawlog that the run was made of: only pixels whose depth was measured count as mask",
+		false, "", "IN.rawlog", commandLine);
 	TCLAP::SwitchArg json("", "json", "print JSON instead of the table", commandLine);
 	if (!parseArguments(commandLine, argc, argv)) return kSuccess;
 	if (minimumPixels.getValue() < 0)
 		throw UsageError("--minimum-pixels: not allowed; use a number of pixels >= 0");
 
 	const auto result = associationAccuracy(
-		runWithTruth(folder.getValue(), truth.getValue()), std::size_t(minimumPixels.getValue()));
+		runWithTruth(folder.getValue(), truth.getValue(), images.getValue()),
+		std::size_t(minimumPixels.getValue()));
 	if (json.getValue())
 		std::cout << toJson(result).dump(2) << "\n";
 	else

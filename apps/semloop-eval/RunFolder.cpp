@@ -20,12 +20,14 @@ std::string runFile(const std::string& folder, const std::string& name)
 	return path;
 }
 
-std::vector<RunFrame> runWithTruth(const std::string& folder, const std::string& truthRawlog)
+std::vector<RunFrame> runWithTruth(
+	const std::string& folder, const std::string& truthRawlog, const std::string& images)
 {
 	const auto run = readTumTrajectory(runFile(folder, "trajectory.tum"));
 	const auto associations = readAssociations(runFile(folder, "associations.csv"));
 	requireFile(truthRawlog, "give the rawlog of the true instances");
-	const auto truth = readTrueFrames(truthRawlog);
+	if (!images.empty()) requireFile(images, "give the rawlog that the run was made of");
+	const auto truth = readTrueFrames(truthRawlog, images);
 	try
 	{
 		return joinWithTruth(run, associations, truth);

@@ -13,8 +13,9 @@ namespace semloop
  *  folder is missing. */
 std::string runFile(const std::string& folder, const std::string& name);
 
-/** The frames of a run with their truth; errors name the files. */
-std::vector<RunFrame> runWithTruth(const std::string& folder, const std::string& truthRawlog);
+/** The frames of a run with their truth; errors name the files. See readTrueFrames() for the images. */
+std::vector<RunFrame> runWithTruth(
+	const std::string& folder, const std::string& truthRawlog, const std::string& images = {});
 
 /** A number, or null. */
 nlohmann::ordered_json numberOrNull(const std::optional<double>& value);

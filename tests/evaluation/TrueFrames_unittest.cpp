@@ -1,5 +1,6 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <mrpt/obs/CObservation3DRangeScan.h>
 #include <semloop/config/Error.h>
 #include <semloop/observations/CObservationInstances.h>
 #include <semloop/observations/RawlogWriter.h>
@@ -54,6 +55,56 @@ TEST(TrueFrames, HaveTheInstancesThatAreARealObject)
 	EXPECT_EQ(frames[0].boxes[0].box, slot(3));
 	EXPECT_EQ(frames[0].boxes[0].pixels, 4u);
 	EXPECT_EQ(frames[1].time, at(1));
+}
+
+/** Depth was measured left of this column. */
+std::string writeImages(
+	const TemporaryFolder& folder, double seconds, const cv::Size& size, int columns)
+{
+	mrpt::obs::CObservation3DRangeScan scan;
+	scan.timestamp = at(seconds);
+	scan.hasRangeImage = scan.hasIntensityImage = scan.range_is_depth = true;
+	scan.rangeUnits = 0.001f;
+	scan.rangeImage_setSize(size.height, size.width);
+	scan.rangeImage.setZero();
+	for (int v = 0; v < size.height; ++v)
+		for (int u = 0; u < columns; ++u) scan.rangeImage(v, u) = 1500;
+	scan.intensityImage =
+		mrpt::img::CImage(cv::Mat(size, CV_8UC3, cv::Scalar::all(90)), mrpt::img::DEEP_COPY);
+	scan.cameraParams.ncols = uint32_t(size.width);
+	scan.cameraParams.nrows = uint32_t(size.height);
+	scan.cameraParams.setIntrinsicParamsFromValues(200, 200, 100, 10);
+	scan.cameraParamsIntensity = scan.cameraParams;
+	scan.relativePoseIntensityWRTDepth =
+		mrpt::poses::CPose3D::FromYawPitchRoll(-M_PI / 2, 0, -M_PI / 2);
+	RawlogWriter writer(folder.file("images.rawlog"));
+	writer.write(scan);
+	writer.close();
+	return folder.file("images.rawlog");
+}
+
+TEST(TrueFrames, OfTheMaskCountOnlyPixelsWhoseDepthWasMeasured)
+{
+	const TemporaryFolder folder;
+	const auto truth = writeRawlog(folder, {observation(0, {3}), observation(1, {3})});
+	const auto images = writeImages(folder, 1, {200, 20}, slot(3).x + 1);
+	const auto frames = readTrueFrames(truth, images);
+	ASSERT_EQ(frames.size(), 1u) << "of the other there is no image";
+	EXPECT_EQ(frames[0].time, at(1));
+	EXPECT_EQ(frames[0].boxes.at(0).pixels, 1u);
+}
+
+TEST(TrueFrames, ImagesThatDoNotBelongToTheInstancesAreRefused)
+{
+	const TemporaryFolder folder;
+	const auto truth = writeRawlog(folder, {observation(0, {3})});
+	const auto other = writeImages(folder, 0, {100, 20}, 10);
+	EXPECT_THAT(
+		messageOf<InputError>([&] { readTrueFrames(truth, other); }), HasSubstr("differ in size"));
+	const auto later = writeImages(folder, 5, {200, 20}, 10);
+	EXPECT_THAT(
+		messageOf<InputError>([&] { readTrueFrames(truth, later); }),
+		HasSubstr("no image is of the time"));
 }
 
 TEST(TrueFrames, ARawlogWithoutAnyTrueObjectIsRefused)

@@ -1,7 +1,9 @@
+#include <mrpt/obs/CObservation3DRangeScan.h>
 #include <semloop/config/Error.h>
 #include <semloop/evaluation/TrueFrames.h>
 #include <semloop/observations/CObservationInstances.h>
 #include <semloop/observations/RawlogReader.h>
+#include <semloop/observations/RgbdFrame.h>
 #include <semloop/observations/UnixTime.h>
 
 #include <algorithm>
@@ -15,14 +17,47 @@ namespace
 {
 constexpr std::chrono::milliseconds kRounding(1);
 
-TrueFrame trueFrameOf(const CObservationInstances& instances)
+/** Instances with a true object, by time. */
+using TrueInstances = std::map<mrpt::Clock::time_point, std::vector<Instance>>;
+
+TrueInstances readTrueInstances(const std::string& rawlog)
+{
+	RawlogReader reader(rawlog);
+	TrueInstances result;
+	bool any = false;
+	while (const auto observation = reader.next())
+		if (const auto* seen = dynamic_cast<const CObservationInstances*>(observation.get()))
+		{
+			auto& instances = result[seen->timestamp];
+			for (const Instance& instance : seen->instances)
+				if (instance.trueObject) instances.push_back(instance);
+			any = any || !instances.empty();
+		}
+	if (!any)
+		throw InputError(
+			rawlog +
+			": no instance in it says which real object it is; give the rawlog of the true "
+			"instances");
+	return result;
+}
+
+template <typename PixelsOf>
+TrueFrame trueFrameOf(
+	mrpt::Clock::time_point time, const std::vector<Instance>& instances, const PixelsOf& pixelsOf)
 {
 	TrueFrame frame;
-	frame.time = instances.timestamp;
-	for (const Instance& instance : instances.instances)
-		if (instance.trueObject)
-			frame.boxes.push_back({*instance.trueObject, instance.box, instance.mask.area()});
+	frame.time = time;
+	for (const Instance& instance : instances)
+		frame.boxes.push_back({*instance.trueObject, instance.box, pixelsOf(instance.mask)});
 	return frame;
+}
+
+std::size_t measuredPixels(const InstanceMask& mask, const cv::Mat& depth)
+{
+	std::size_t count = 0;
+	for (const auto& run : mask.runs())
+		for (int u = run.begin; u < run.end; ++u) count += depth.at<float>(run.row, u) > 0;
+	return count;
 }
 
 /** Number of the pose at this time. */
@@ -46,25 +81,41 @@ std::string spanOf(mrpt::Clock::time_point first, mrpt::Clock::time_point last)
 }
 }  // namespace
 
-std::vector<TrueFrame> readTrueFrames(const std::string& rawlog)
+std::vector<TrueFrame> readTrueFrames(const std::string& rawlog, const std::string& images)
 {
-	RawlogReader reader(rawlog);
+	const TrueInstances truth = readTrueInstances(rawlog);
 	std::vector<TrueFrame> frames;
-	std::size_t boxes = 0;
+	if (images.empty())
+	{
+		const auto area = [](const InstanceMask& mask) { return mask.area(); };
+		for (const auto& [time, instances] : truth)
+			frames.push_back(trueFrameOf(time, instances, area));
+		return frames;
+	}
+
+	RawlogReader reader(images);
 	while (const auto observation = reader.next())
-		if (const auto* instances = dynamic_cast<const CObservationInstances*>(observation.get()))
+	{
+		const auto* scan =
+			dynamic_cast<const mrpt::obs::CObservation3DRangeScan*>(observation.get());
+		if (!scan) continue;
+		const auto found = truth.lower_bound(scan->timestamp - kRounding);
+		if (found == truth.end() || found->first > scan->timestamp + kRounding) continue;
+		const cv::Mat depth = rgbdFrameFrom(*scan).depth;
+		const auto measured = [&](const InstanceMask& mask)
 		{
-			frames.push_back(trueFrameOf(*instances));
-			boxes += frames.back().boxes.size();
-		}
-	if (boxes == 0)
+			if (mask.imageSize() != depth.size())
+				throw InputError(
+					images + " with " + rawlog +
+					": images and true instances differ in size; give those of one simulation");
+			return measuredPixels(mask, depth);
+		};
+		frames.push_back(trueFrameOf(found->first, found->second, measured));
+	}
+	if (frames.empty())
 		throw InputError(
-			rawlog +
-			": no instance in it says which real object it is; give the rawlog of the true "
-			"instances");
-	std::stable_sort(
-		frames.begin(), frames.end(),
-		[](const TrueFrame& a, const TrueFrame& b) { return a.time < b.time; });
+			images + " with " + rawlog +
+			": no image is of the time of true instances; give those of one simulation");
 	return frames;
 }
 

@@ -1,5 +1,5 @@
-#include <semloop/association/MaskedSurface.h>
 #include <semloop/association/Assignment.h>
+#include <semloop/association/MaskedSurface.h>
 #include <semloop/association/MatchingCost.h>
 #include <semloop/association/ObjectAssociator.h>
 #include <semloop/config/Error.h>
@@ -9,8 +9,6 @@
 
 #include <algorithm>
 #include <cmath>
-
-#include "MaskTrimming.h"
 
 namespace semloop
 {
@@ -101,8 +99,8 @@ bool CObjectMap::internal_insertObservation(
 
 	const CPose3D T_world_camera = robotPose.value_or(CPose3D()) + cropped.frame.T_robot_camera;
 	const auto predicted = predict(cropped.frame.camera, T_world_camera, cropped.frame.depth);
-	const auto assignment = solveAssignment(
-		costMatrix(*this, predicted, cropped), insertionOptions.gate);
+	const auto assignment =
+		solveAssignment(costMatrix(*this, predicted, cropped), insertionOptions.gate);
 
 	std::set<ObjectId> seen;
 	std::vector<bool> isMatched(cropped.instances.size(), false);

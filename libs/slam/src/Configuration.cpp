@@ -146,6 +146,9 @@ std::string configurationReference()
 	page += table(
 		"association", "of semloop::NearestNeighbourAssociator",
 		NearestNeighbourAssociatorOptions());
+	page += table(
+		"frame_registration", "the camera's pose before association; not in the paper",
+		FrameRegistrationOptions());
 	page += table("object_map", "how objects are built", ObjectMapInsertionOptions());
 	page += table(
 		"object_map_maintenance", "when objects are dropped or united",

@@ -17,7 +17,7 @@ struct TrueBox
 {
 	uint32_t object = 0;     //!< Instance::trueObject
 	cv::Rect box;            //!< [px]
-	std::size_t pixels = 0;  //!< of the mask
+	std::size_t pixels = 0;  //!< of the mask, see readTrueFrames()
 };
 
 /** What is really to be seen at a time. */
@@ -28,8 +28,11 @@ struct TrueFrame
 };
 
 /** The instances with a true object in every CObservationInstances of a rawlog, by time. Throws
- *  InputError when the rawlog cannot be read or no instance in it has a true object. */
-std::vector<TrueFrame> readTrueFrames(const std::string& rawlog);
+ *  InputError when the rawlog cannot be read or no instance in it has a true object.
+ *  @param images the rawlog with the frames that the run saw: only pixels whose depth was measured
+ *  count, and frames without a depth image of their time (within 1 ms) are left out. Empty: all pixels
+ *  count. Throws InputError when the sizes differ. */
+std::vector<TrueFrame> readTrueFrames(const std::string& rawlog, const std::string& images = {});
 
 /** A frame that the run used and whose truth is known. */
 struct RunFrame
