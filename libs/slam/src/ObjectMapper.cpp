@@ -54,21 +54,23 @@ std::vector<ObjectObservation> ObjectMapper::update(
 	for (const auto& t : tracked)
 		if (t.confirmed) confirmed.push_back(t);
 
-	const Detections detections = detectionsOf(frame, observation, confirmed);
 	auto predicted = predict(frame, T_world_expected, localMap);
-	auto landmarks = map_->landmarks(predicted, frame.camera);
-	mrpt::poses::CPose3D T_world_camera = T_world_expected;
-	registered_ = registerFrame(landmarks, detections.items, sigma, registrationOptions_);
-	if (registered_.T_seen_expected != mrpt::poses::CPose3D())
+	Detections detections;
 	{
-		T_world_camera = T_world_expected + (-registered_.T_seen_expected);
-		predicted = predict(frame, T_world_camera, localMap);
-		landmarks = map_->landmarks(predicted, frame.camera);
+		const StageTimings::Scope timing(timings_, "registration");
+		detections = detectionsOf(frame, observation, confirmed);
+		registered_ = registerFrame(
+			map_->landmarks(predicted, frame.camera), detections.items, sigma,
+			registrationOptions_);
 	}
+	const auto T_world_camera = T_world_expected + (-registered_.T_seen_expected);
+	if (registered_.T_seen_expected != mrpt::poses::CPose3D())
+		predicted = predict(frame, T_world_camera, localMap);
 
 	std::vector<std::optional<ObjectId>> objects(confirmed.size());
 	{
 		const StageTimings::Scope timing(timings_, "association");
+		const auto landmarks = map_->landmarks(predicted, frame.camera);
 		for (const auto& [j, k] : associator_->associate(landmarks, detections.items).matches)
 			objects[k] = predicted[j].id;
 	}

@@ -50,7 +50,8 @@ public:
 		InstanceTrackerOptions options, std::shared_ptr<const MatchingCost> cost,
 		FrameRegistrationOptions registration = {});
 
-	/** The frame and its instances (rectified, one image size), T_previous_camera since the last call.
+	/** The frame and its instances (rectified, one image size), T_previous_camera since the last call and
+	 *  its uncertainty. The frame is registered to the moved tracks first, see registration().
 	 *  One entry per detection that is strong enough, in the observation's order. Throws InputError
 	 *  when the image sizes differ; an empty depth image means that there is no depth. */
 	std::vector<TrackedInstance> track(

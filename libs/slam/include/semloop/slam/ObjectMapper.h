@@ -36,8 +36,10 @@ public:
 		FrameRegistrationOptions registration = {});
 
 	/** What went into the map, in the order of tracked; two tracks of one object, as when a mask was
-	 *  split, are both there. T_world_camera of the optical frame. Only objects of the local map are
-	 *  landmarks: the drift since others were seen may have put them where another one stands now. */
+	 *  split, are both there. Only objects of the local map are landmarks: the drift since others were
+	 *  seen may have put them where another one stands now. The frame is registered to them first, and
+	 *  fused where registration() puts the camera.
+	 *  @param T_world_expected the camera's optical frame, by all that is known before, with its sigma */
 	std::vector<ObjectObservation> update(
 		const RgbdFrame& frame, const CObservationInstances& observation,
 		const std::vector<TrackedInstance>& tracked, const mrpt::poses::CPose3D& T_world_expected,
