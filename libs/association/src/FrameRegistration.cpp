@@ -4,6 +4,8 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
+#include <set>
+#include <utility>
 
 namespace semloop
 {
@@ -83,12 +85,22 @@ std::vector<Pair> candidatePairs(
 			if ((to - from).norm() < reach)
 				pairs.push_back({j, k, from, to, 1 / square(sigma), similarity});
 		}
-	std::stable_sort(
-		pairs.begin(), pairs.end(),
-		[](const Pair& a, const Pair& b) { return a.similarity > b.similarity; });
+	const auto isBetter = [](const Pair& a, const Pair& b)
+	{
+		if (a.similarity != b.similarity) return a.similarity > b.similarity;
+		return (a.to - a.from).squaredNorm() < (b.to - b.from).squaredNorm();
+	};
+	std::stable_sort(pairs.begin(), pairs.end(), isBetter);
 	if (pairs.size() > kMostPairs) pairs.resize(kMostPairs);
 	return pairs;
 }
+
+struct Solution
+{
+	Motion motion;
+	Pairs inliers;
+	double cost = 0;
+};
 
 class Registration
 {
@@ -132,8 +144,8 @@ public:
 		return motion;
 	}
 
-	/** Truncated sum over one-to-one pairs, the prior included; less is better. */
-	double cost(const Motion& motion, Pairs& inliers) const
+	/** The cost is a truncated sum over one-to-one pairs, the prior included; less is better. */
+	Solution evaluate(const Motion& motion) const
 	{
 		struct Residual
 		{
@@ -151,26 +163,54 @@ public:
 		std::stable_sort(
 			residuals.begin(), residuals.end(),
 			[](const Residual& a, const Residual& b) { return a.chi2 < b.chi2; });
-		inliers.clear();
-		double sum =
+		Solution result;
+		result.motion = motion;
+		result.cost =
 			weightT_ * motion.translation.squaredNorm() + weightR_ * motion.rotation.squaredNorm();
 		for (const auto& [chi2, pair] : residuals)
 		{
-			const bool taken = std::any_of(
-				inliers.begin(), inliers.end(),
-				[p = pair](const Pair* o)
-				{ return o->landmark == p->landmark || o->detection == p->detection; });
-			if (taken) continue;
-			inliers.push_back(pair);
-			sum += chi2 - kTruncation;
+			const auto isTaken = [p = pair](const Pair* o)
+			{ return o->landmark == p->landmark || o->detection == p->detection; };
+			if (std::any_of(result.inliers.begin(), result.inliers.end(), isTaken)) continue;
+			result.inliers.push_back(pair);
+			result.cost += chi2 - kTruncation;
 		}
-		return sum;
+		return result;
+	}
+
+	/** The best motion that two pairs propose, fitted to its inliers, or `known` when none is better. */
+	Solution search(const Solution& known) const
+	{
+		Solution best = known;
+		const auto consider = [&](const Pairs& proposers, const Motion& start)
+		{
+			auto proposed = evaluate(fit(proposers, start));
+			if (proposed.cost < best.cost) best = std::move(proposed);
+		};
+		for (const Pair& a : pairs_)
+			for (const Pair* b = pairs_.data(); b != &a; ++b)
+				if (a.landmark != b->landmark && a.detection != b->detection)
+					consider({&a, b}, Motion());
+		for (int i = 0; i < 3; ++i) consider(Pairs(best.inliers), Motion(best.motion));
+		return best;
 	}
 
 private:
 	const std::vector<Pair>& pairs_;
 	double weightT_, weightR_;
 };
+
+/** No motion has a cost below this. */
+double leastCost(const std::vector<Pair>& pairs)
+{
+	std::set<std::size_t> landmarks, detections;
+	for (const Pair& pair : pairs)
+	{
+		landmarks.insert(pair.landmark);
+		detections.insert(pair.detection);
+	}
+	return -kTruncation * double(std::min(landmarks.size(), detections.size()));
+}
 
 mrpt::poses::CPose3D poseOf(const Motion& motion)
 {
@@ -218,40 +258,19 @@ FrameRegistration registerFrame(
 	if (pairs.size() < std::size_t(options.minPairs)) return result;
 	const Registration registration(pairs, prior);
 
-	Pairs inliers, bestInliers;
-	const double unmoved = registration.cost(Motion(), bestInliers);
-	Pairs unmovedInliers = bestInliers;
-	double best = unmoved;
-	Motion motion;
-	const auto consider = [&](const Pairs& proposers, const Motion& start)
-	{
-		const Motion proposed = registration.fit(proposers, start);
-		const double cost = registration.cost(proposed, inliers);
-		if (cost >= best) return;
-		best = cost;
-		motion = proposed;
-		bestInliers = inliers;
-	};
-	for (std::size_t a = 0; a < pairs.size(); ++a)
-		for (std::size_t b = 0; b < a; ++b)
-			if (pairs[a].landmark != pairs[b].landmark && pairs[a].detection != pairs[b].detection)
-				consider({&pairs[a], &pairs[b]}, Motion());
-	for (int i = 0; i < 3; ++i) consider(Pairs(bestInliers), motion);
+	const Solution expected = registration.evaluate(Motion());
+	Solution best = expected;
+	if (expected.cost - leastCost(pairs) >= kLeastGain) best = registration.search(expected);
+	const bool moved = expected.cost - best.cost >= kLeastGain &&
+					   best.inliers.size() >= std::size_t(options.minPairs);
+	const Solution& found = moved ? best : expected;
+	if (found.inliers.size() < std::size_t(options.minPairs)) return result;
 
-	if (unmoved - best < kLeastGain || int(bestInliers.size()) < options.minPairs)
-	{
-		if (int(unmovedInliers.size()) < options.minPairs) return result;
-		Matrix6 information;
-		registration.fit(unmovedInliers, Motion(), &information);
-		result.sigma = sigmaOf(information);
-		result.pairs = int(unmovedInliers.size());
-		return result;
-	}
 	Matrix6 information;
-	motion = registration.fit(bestInliers, motion, &information);
-	result.T_seen_expected = poseOf(motion);
+	const Motion motion = registration.fit(found.inliers, found.motion, &information);
+	if (moved) result.T_seen_expected = poseOf(motion);
 	result.sigma = sigmaOf(information);
-	result.pairs = int(bestInliers.size());
+	result.pairs = int(found.inliers.size());
 	return result;
 }
 
