@@ -61,6 +61,8 @@ TEST_F(SemloopEvalAssociation, NamesWhatIsMissingWithARemedy)
 	expectError(
 		"association " + path("OUT") + " --truth " + path("none.rawlog"), 1,
 		{"none.rawlog", "true instances"});
+	expectError(arguments_ + " --images " + path("none.rawlog"), 1, {"none.rawlog", "made of"});
+	expectError(arguments_ + " --images " + truth_, 1, {"no image is of the time"});
 	std::filesystem::remove(path("OUT/associations.csv"));
 	expectError(arguments_, 1, {"associations.csv", "run it again"});
 }

@@ -138,6 +138,30 @@ TEST(FrameRegistration, ACentreThatMovedWithWhatIsVisibleOfALargeThingCountsLitt
 	EXPECT_EQ(registered(landmarks, aDesk().move(0, {-0.4, 0, 0}, 0.2)).pairs, 4);
 }
 
+TEST(FrameRegistration, ARowOfThingsThatLookAlikeIsAmbiguous)
+{
+	// Moved by half their distance, and the last is out of view: left or right explain four each.
+	const Things row({{-1, 0, 3}, {-0.5, 0, 3}, {0, 0, 3}, {0.5, 0, 3}, {1, 0, 3}}, true);
+	const Things seen({{-0.75, 0, 3}, {-0.25, 0, 3}, {0.25, 0, 3}, {0.75, 0, 3}}, true);
+	const auto result = registered(row, seen);
+	EXPECT_EQ(result.T_seen_expected, CPose3D());
+	EXPECT_EQ(result.pairs, 0);
+	EXPECT_EQ(result.sigma.translation, kNoisy.translation);
+}
+
+TEST(FrameRegistration, AMotionTooSmallToBeSureOfIsLeftAsUncertainty)
+{
+	// 5 pairs of 3 cm, as good as no rotation: a variance of 1 / (5 / 0.03^2 + 1 / 0.2^2) when in place.
+	constexpr PoseSigma prior{0.2, 0};
+	EXPECT_NEAR(registered(aDesk(), aDesk(), prior).sigma.translation, 0.01338, 2e-4);
+	// Off by 4 cm they explain 5 (4 / 3)^2 = 8.9 < 22.5 more: 0.0398 m refused, a third of its square
+	// along each axis.
+	const auto result = registered(aDesk(), aDesk().seenAfter(CPose3D(0.04, 0, 0, 0, 0, 0)), prior);
+	EXPECT_EQ(result.T_seen_expected, CPose3D());
+	EXPECT_EQ(result.pairs, 5);
+	EXPECT_NEAR(result.sigma.translation, std::hypot(0.01338, 0.0398 / std::sqrt(3.0)), 5e-4);
+}
+
 TEST(FrameRegistration, ACameraThatIsCertainStaysWhereItIs)
 {
 	const CPose3D motion(0.1, 0, 0, 0, 0, 0);

@@ -47,6 +47,7 @@ TEST(MaskedSurface, HasItsCentreWhereTheMaskAndTheDepthSay)
 	EXPECT_NEAR(surface.extent()->centre.x, 0.4, 0.01);
 	EXPECT_NEAR(surface.extent()->centre.y, 0, 0.01);
 	EXPECT_NEAR(surface.extent()->centre.z, 2, 1e-6);
+	EXPECT_NEAR(surface.extent()->radius, 0.24 / std::sqrt(2.0), 0.01);
 }
 
 TEST(MaskedSurface, CentreIsNotMovedByAFewPixelsOfTheBackground)
@@ -56,6 +57,8 @@ TEST(MaskedSurface, CentreIsNotMovedByAFewPixelsOfTheBackground)
 	const MaskedSurface surface(disc(210, 120, 30), depth, camera());
 	EXPECT_NEAR(surface.extent()->centre.z, 2, 1e-6);
 	EXPECT_NEAR(surface.extent()->centre.x, 0.4, 0.1);
+	// Half of a disc of 0.24 m lies within 0.24 / sqrt(2).
+	EXPECT_NEAR(surface.extent()->radius, 0.24 / std::sqrt(2.0), 0.06);
 }
 
 TEST(MaskedSurface, SeenFromTheSamePlaceHasTheSameMask)

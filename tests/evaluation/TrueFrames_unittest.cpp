@@ -3,6 +3,7 @@
 #include <mrpt/obs/CObservation3DRangeScan.h>
 #include <semloop/config/Error.h>
 #include <semloop/observations/CObservationInstances.h>
+#include <semloop/observations/RawlogReader.h>
 #include <semloop/observations/RawlogWriter.h>
 
 #include "EvaluationFixtures.h"
@@ -92,6 +93,32 @@ TEST(TrueFrames, OfTheMaskCountOnlyPixelsWhoseDepthWasMeasured)
 	ASSERT_EQ(frames.size(), 1u) << "of the other there is no image";
 	EXPECT_EQ(frames[0].time, at(1));
 	EXPECT_EQ(frames[0].boxes.at(0).pixels, 1u);
+}
+
+TEST(TrueFrames, ADamagedImageIsLeftOut)
+{
+	const TemporaryFolder folder;
+	const auto truth = writeRawlog(folder, {observation(0, {3}), observation(1, {3})});
+	const auto images = writeImages(folder, 0, {200, 20}, 0);
+	mrpt::obs::CObservation3DRangeScan damaged;
+	damaged.timestamp = at(1);
+	RawlogWriter writer(folder.file("two.rawlog"));
+	writer.write(*RawlogReader(images).next());
+	writer.write(damaged);
+	writer.close();
+	const auto frames = readTrueFrames(truth, folder.file("two.rawlog"));
+	ASSERT_EQ(frames.size(), 1u);
+	EXPECT_EQ(frames[0].time, at(0));
+	EXPECT_EQ(frames[0].boxes.at(0).pixels, 0u);
+}
+
+TEST(TrueFrames, WhatAFileTellsTwiceCountsOnce)
+{
+	const TemporaryFolder folder;
+	const auto frames =
+		readTrueFrames(writeRawlog(folder, {observation(0, {3}), observation(0, {3})}));
+	ASSERT_EQ(frames.size(), 1u);
+	EXPECT_EQ(frames[0].boxes.size(), 1u);
 }
 
 TEST(TrueFrames, ImagesThatDoNotBelongToTheInstancesAreRefused)

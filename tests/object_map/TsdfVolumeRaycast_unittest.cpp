@@ -1,8 +1,9 @@
 #include <gtest/gtest.h>
+#include <semloop/association/MaskedSurface.h>
 #include <semloop/config/Error.h>
 #include <semloop/object_map/TsdfVolume.h>
 
-#include "AnalyticScene.h"
+#include "TsdfFixtures.h"
 
 using namespace semloop;
 using namespace semloop::testing;
@@ -10,15 +11,6 @@ using Eigen::Vector3d;
 
 namespace
 {
-constexpr double radius = 0.2, voxel = 0.01;
-
-TsdfVolume ball()
-{
-	TsdfVolume volume(options(voxel));
-	for (const auto& pose : posesAllAround(1.0)) fuse(volume, {sphere(radius)}, pose);
-	return volume;
-}
-
 /** Root mean square and largest distance of the hits to the sphere [m]. */
 std::pair<double, double> hitError(
 	const ObjectPrediction& seen, const mrpt::poses::CPose3D& T_object_camera)
@@ -45,7 +37,7 @@ TEST(TsdfVolumeRaycast, ANewViewOfASphereHasItsSilhouetteAndDepth)
 	const View truth = render({sphere(radius)}, eye);  // 214 pixels across
 	for (const int samples : {32, 64, 1000})
 	{
-		const auto seen = ball().raycast(kinect(), -eye, samples);
+		const auto seen = sphereFromAllAround().raycast(kinect(), -eye, samples);
 		ASSERT_TRUE(seen.has_value());
 		EXPECT_EQ(seen->mask.imageSize(), cv::Size(640, 480));
 		EXPECT_GT(intersectionOverUnion(seen->mask, truth.mask), samples == 32 ? 0.94 : 0.96);
@@ -56,24 +48,39 @@ TEST(TsdfVolumeRaycast, ANewViewOfASphereHasItsSilhouetteAndDepth)
 	}
 }
 
+TEST(TsdfVolumeRaycast, TheExtentIsThatOfADetectionOfTheSameThing)
+{
+	// Off the image's middle, so that box, stride and principal point all matter.
+	const auto eye = lookAt({1.1, -0.4, 0.3}, {0.1, 0.15, -0.1});
+	const View truth = render({sphere(radius)}, eye);
+	const auto detected = MaskedSurface(truth.mask, truth.frame.depth, kinect()).extent();
+	const auto seen = sphereFromAllAround().raycast(kinect(), -eye, 36);
+	ASSERT_TRUE(seen && detected);
+	const auto extent = seen->extent(kinect());
+	ASSERT_TRUE(extent);
+	EXPECT_LT((extent->centre - detected->centre).norm(), voxel);
+	EXPECT_NEAR(extent->radius, detected->radius, voxel);
+	EXPECT_FALSE(ObjectPrediction().extent(kinect()));
+}
+
 TEST(TsdfVolumeRaycast, CastPixelsCoverTheBox)
 {
 	for (const int samples : {4, 7, 64, 200})
 	{
-		const auto seen = ball().raycast(kinect(), -lookAt({1, 0, 0}), samples);
+		const auto seen = sphereFromAllAround().raycast(kinect(), -lookAt({1, 0, 0}), samples);
 		ASSERT_TRUE(seen.has_value());
 		EXPECT_EQ(seen->depth.cols, (seen->box.width - 1) / seen->stride + 1);
 		EXPECT_EQ(seen->depth.rows, (seen->box.height - 1) / seen->stride + 1);
 		EXPECT_LE(std::max(seen->depth.cols, seen->depth.rows), samples);
 		EXPECT_EQ(seen->box & seen->mask.boundingBox(), seen->mask.boundingBox());
 	}
-	EXPECT_THROW(ball().raycast(kinect(), {}, 3), UsageError);
+	EXPECT_THROW(sphereFromAllAround().raycast(kinect(), {}, 3), UsageError);
 }
 
 TEST(TsdfVolumeRaycast, ADistantObjectOfAFewPixelsIsSeen)
 {
 	const auto eye = lookAt({0, 12, 0});  // 17 pixels
-	const auto seen = ball().raycast(kinect(), -eye);
+	const auto seen = sphereFromAllAround().raycast(kinect(), -eye);
 	ASSERT_TRUE(seen.has_value());
 	EXPECT_EQ(seen->stride, 1);
 	EXPECT_GT(intersectionOverUnion(seen->mask, render({sphere(radius)}, eye).mask), 0.85);
@@ -88,7 +95,7 @@ TEST(TsdfVolumeRaycast, AnObjectThatReachesOverTheImageBorderIsCut)
 		const auto eye = lookAt({1, 0, 0}, target);
 		const View truth = render({sphere(radius)}, eye);
 		ASSERT_GT(truth.mask.area(), 1000U);
-		const auto seen = ball().raycast(kinect(), -eye);
+		const auto seen = sphereFromAllAround().raycast(kinect(), -eye);
 		ASSERT_TRUE(seen.has_value());
 		EXPECT_GT(intersectionOverUnion(seen->mask, truth.mask), 0.93);
 	}
@@ -96,7 +103,7 @@ TEST(TsdfVolumeRaycast, AnObjectThatReachesOverTheImageBorderIsCut)
 
 TEST(TsdfVolumeRaycast, AnObjectOutOfSightGivesNothing)
 {
-	const auto volume = ball();
+	const auto volume = sphereFromAllAround();
 	EXPECT_FALSE(volume.raycast(kinect(), -lookAt({1, 0, 0}, {2, 0, 0})).has_value());  // behind
 	EXPECT_FALSE(volume.raycast(kinect(), -lookAt({1, 0, 0}, {1, 2, 0})).has_value());  // beside
 	EXPECT_FALSE(volume.raycast(kinect(), -lookAt({0.25, 0, 0}, {1, 0, 0})).has_value());
@@ -104,12 +111,13 @@ TEST(TsdfVolumeRaycast, AnObjectOutOfSightGivesNothing)
 
 TEST(TsdfVolumeRaycast, FromInsideTheObjectNoFrontIsSeen)
 {
-	EXPECT_FALSE(ball().raycast(kinect(), -lookAt({0.01, 0.02, 0}, {1, 0, 0})).has_value());
+	EXPECT_FALSE(
+		sphereFromAllAround().raycast(kinect(), -lookAt({0.01, 0.02, 0}, {1, 0, 0})).has_value());
 }
 
 TEST(TsdfVolumeRaycast, CloseBeforeTheSurfaceTheWholeImageIsCovered)
 {
-	const auto seen = ball().raycast(kinect(), -lookAt({0.3, 0, 0}));
+	const auto seen = sphereFromAllAround().raycast(kinect(), -lookAt({0.3, 0, 0}));
 	ASSERT_TRUE(seen.has_value());
 	EXPECT_EQ(seen->mask.area(), 640U * 480U);
 	const auto middle = seen->depth.at<float>(seen->depth.rows / 2, seen->depth.cols / 2);

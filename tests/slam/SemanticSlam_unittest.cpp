@@ -158,6 +158,13 @@ TEST(SemanticSlam, WhatAllObjectsSayOutvotesNoisyPoses)
 		config.write("local_map", "length", 1000);
 		config.write("slam", "loop_every_frames", 1000);
 		const auto run = mapRawlog(recorded.rawlog, config, 2);
+		const double noisy = absoluteError(run->slam->odometryTrajectory(), recorded.truth);
+		const double estimated = absoluteError(run->slam->trajectory(), recorded.truth);
+		EXPECT_GT(noisy, 0.2);
+		if (registration)
+		{
+			EXPECT_LT(estimated, 0.5 * noisy);
+		}
 		return *associationAccuracy(joinWithTruth(
 										run->slam->trajectory(), run->slam->associations(),
 										readTrueFrames(recorded.rawlog)))

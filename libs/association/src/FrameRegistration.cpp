@@ -102,6 +102,12 @@ struct Solution
 	double cost = 0;
 };
 
+bool areDisjoint(const Pairs& a, const Pairs& b)
+{
+	const auto isInB = [&](const Pair* pair) { return std::count(b.begin(), b.end(), pair) > 0; };
+	return std::none_of(a.begin(), a.end(), isInB);
+}
+
 class Registration
 {
 public:
@@ -125,7 +131,7 @@ public:
 			g << -weightT_ * motion.translation, -weightR_ * motion.rotation;
 			for (const Pair* pair : pairs)
 			{
-				// R exp(w) p is R p + w x R p for a w in the seen frame.
+				// exp(w) R p is R p + w x R p.
 				const Vector3d p = R * pair->from;
 				Eigen::Matrix<double, 3, 6> J;
 				J << 1, 0, 0, 0, p.z(), -p.y(),  //
@@ -178,20 +184,28 @@ public:
 		return result;
 	}
 
-	/** The best motion that two pairs propose, fitted to its inliers, or `known` when none is better. */
-	Solution search(const Solution& known) const
+	/** The best motion that two pairs propose, fitted to its inliers; `expected` when none is better by
+	 *  kLeastGain than that and than any other without a pair in common. */
+	Solution search(const Solution& expected) const
 	{
-		Solution best = known;
-		const auto consider = [&](const Pairs& proposers, const Motion& start)
-		{
-			auto proposed = evaluate(fit(proposers, start));
-			if (proposed.cost < best.cost) best = std::move(proposed);
-		};
+		std::vector<Solution> proposed;
 		for (const Pair& a : pairs_)
 			for (const Pair* b = pairs_.data(); b != &a; ++b)
 				if (a.landmark != b->landmark && a.detection != b->detection)
-					consider({&a, b}, Motion());
-		for (int i = 0; i < 3; ++i) consider(Pairs(best.inliers), Motion(best.motion));
+					proposed.push_back(evaluate(fit({&a, b}, Motion())));
+		const auto isBetter = [](const Solution& a, const Solution& b) { return a.cost < b.cost; };
+		const auto first = std::min_element(proposed.begin(), proposed.end(), isBetter);
+		if (first == proposed.end()) return expected;
+		Solution best = *first;
+		for (int i = 0; i < 3; ++i)
+		{
+			auto refined = evaluate(fit(best.inliers, best.motion));
+			if (refined.cost < best.cost) best = std::move(refined);
+		}
+		if (best.cost > expected.cost - kLeastGain) return expected;
+		for (const Solution& rival : proposed)
+			if (rival.cost < best.cost + kLeastGain && areDisjoint(rival.inliers, best.inliers))
+				return expected;
 		return best;
 	}
 
@@ -219,19 +233,18 @@ mrpt::poses::CPose3D poseOf(const Motion& motion)
 	const Vector3d& t = motion.translation;
 	return mrpt::poses::CPose3D(R, mrpt::math::TVector3D(t.x(), t.y(), t.z()));
 }
-
-PoseSigma sigmaOf(const Matrix6& information)
-{
-	const Matrix6 covariance = information.inverse();
-	return {
-		std::sqrt(covariance.topLeftCorner<3, 3>().trace() / 3),
-		std::sqrt(covariance.bottomRightCorner<3, 3>().trace() / 3)};
-}
 }  // namespace
 
 PoseSigma operator+(const PoseSigma& a, const PoseSigma& b)
 {
 	return {std::hypot(a.translation, b.translation), std::hypot(a.rotation, b.rotation)};
+}
+
+PoseSigma sigmaOf(const Eigen::Matrix<double, 6, 6>& covariance)
+{
+	return {
+		std::sqrt(covariance.topLeftCorner<3, 3>().trace() / 3),
+		std::sqrt(covariance.bottomRightCorner<3, 3>().trace() / 3)};
 }
 
 void FrameRegistrationOptions::describe(OptionFields& f)
@@ -259,18 +272,20 @@ FrameRegistration registerFrame(
 	const Registration registration(pairs, prior);
 
 	const Solution expected = registration.evaluate(Motion());
-	Solution best = expected;
-	if (expected.cost - leastCost(pairs) >= kLeastGain) best = registration.search(expected);
-	const bool moved = expected.cost - best.cost >= kLeastGain &&
-					   best.inliers.size() >= std::size_t(options.minPairs);
-	const Solution& found = moved ? best : expected;
+	Solution found = expected;
+	if (expected.cost - leastCost(pairs) >= kLeastGain) found = registration.search(expected);
 	if (found.inliers.size() < std::size_t(options.minPairs)) return result;
 
 	Matrix6 information;
 	const Motion motion = registration.fit(found.inliers, found.motion, &information);
-	if (moved) result.T_seen_expected = poseOf(motion);
-	result.sigma = sigmaOf(information);
+	result.sigma = sigmaOf(information.inverse());
 	result.pairs = int(found.inliers.size());
+	if (found.cost < expected.cost)
+		result.T_seen_expected = poseOf(motion);
+	else  // What the pairs would have moved may yet be an error.
+		result.sigma = result.sigma + PoseSigma{
+										  motion.translation.norm() / std::sqrt(3.0),
+										  motion.rotation.norm() / std::sqrt(3.0)};
 	return result;
 }
 

@@ -78,7 +78,7 @@ std::vector<TrackedInstance> InstanceTracker::track(
 	for (const auto& track : tracks_) known.push_back(track.item());
 	for (const auto& track : seen) detections.push_back(track.item());
 	registered_ = registerFrame(known, detections, sigma, registrationOptions_);
-	if (registered_.pairs > 0)
+	if (registered_.T_seen_expected != mrpt::poses::CPose3D())
 	{
 		moveTracks(frame.camera, registered_.T_seen_expected);
 		known.clear();

@@ -36,14 +36,6 @@ bool isDepth(float z)
 	return z > 0 && std::isfinite(z);
 }
 
-/** Reorders the values; there is at least one. */
-float median(std::vector<float>& values)
-{
-	const auto middle = values.begin() + std::ptrdiff_t(values.size() / 2);
-	std::nth_element(values.begin(), middle, values.end());
-	return *middle;
-}
-
 /** The masked pixels at the middles of the grid's cells. */
 std::vector<cv::Point> gridPixels(const InstanceMask& mask, int step)
 {
@@ -87,26 +79,27 @@ MaskedSurface::MaskedSurface(
 	gridStep_ = std::max(1, int(std::ceil(std::sqrt(pixelsPerSample))));
 	const auto pixels = gridPixels(mask, gridStep_);
 
-	std::vector<float> depths;
+	const auto unprojected = [&](const cv::Point& pixel, float d)
+	{
+		return mrpt::math::TPoint3Df(
+			(float(pixel.x) - float(camera.cx())) * d / float(camera.fx()),
+			(float(pixel.y) - float(camera.cy())) * d / float(camera.fy()), d);
+	};
+	std::vector<mrpt::math::TPoint3Df> measured;
 	for (const auto& pixel : pixels)
-		if (const float d = depth.at<float>(pixel); isDepth(d)) depths.push_back(d);
-	if (depths.empty()) return;
-	const float medianDepth = median(depths);
+		if (const float d = depth.at<float>(pixel); isDepth(d))
+			measured.push_back(unprojected(pixel, d));
+	extent_ = extentOf(measured);
+	if (!extent_) return;
 
-	const float fx = float(camera.fx()), fy = float(camera.fy());
-	const float cx = float(camera.cx()), cy = float(camera.cy());
+	const auto medianDepth = float(extent_->centre.z);
 	samples_.reserve(pixels.size());
-	std::vector<mrpt::math::TPoint3Df> measuredPoints;
 	for (const auto& pixel : pixels)
 	{
-		const float measured = depth.at<float>(pixel);
-		const float d = isDepth(measured) ? measured : medianDepth;
-		const mrpt::math::TPoint3Df point(
-			(float(pixel.x) - cx) * d / fx, (float(pixel.y) - cy) * d / fy, d);
-		samples_.push_back({point, float(gridStep_) * d / fx});
-		if (isDepth(measured)) measuredPoints.push_back(point);
+		const float own = depth.at<float>(pixel);
+		const float d = isDepth(own) ? own : medianDepth;
+		samples_.push_back({unprojected(pixel, d), float(gridStep_) * d / float(camera.fx())});
 	}
-	extent_ = extentOf(measuredPoints);
 }
 
 void MaskedSurface::transform(const mrpt::poses::CPose3D& T_new_old)

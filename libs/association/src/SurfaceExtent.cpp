@@ -1,7 +1,6 @@
 #include <semloop/association/SurfaceExtent.h>
 
 #include <algorithm>
-#include <cmath>
 
 namespace semloop
 {
@@ -27,9 +26,10 @@ std::optional<SurfaceExtent> extentOf(const std::vector<mrpt::math::TPoint3Df>& 
 	}
 	SurfaceExtent extent;
 	extent.centre = {median(x), median(y), median(z)};
-	double sum = 0;
-	for (const auto& p : points) sum += (mrpt::math::TPoint3D(p) - extent.centre).sqrNorm();
-	extent.radius = std::sqrt(sum / double(points.size()));
+	std::vector<float> distances;
+	for (const auto& p : points)
+		distances.push_back(float((mrpt::math::TPoint3D(p) - extent.centre).norm()));
+	extent.radius = median(distances);
 	return extent;
 }
 

@@ -17,8 +17,13 @@ namespace
 {
 constexpr std::chrono::milliseconds kRounding(1);
 
-/** Instances with a true object, by time. */
-using TrueInstances = std::map<mrpt::Clock::time_point, std::vector<Instance>>;
+struct TrueInstance
+{
+	uint32_t object = 0;
+	cv::Rect box;
+	InstanceMask mask;
+};
+using TrueInstances = std::map<mrpt::Clock::time_point, std::vector<TrueInstance>>;
 
 TrueInstances readTrueInstances(const std::string& rawlog)
 {
@@ -29,8 +34,10 @@ TrueInstances readTrueInstances(const std::string& rawlog)
 		if (const auto* seen = dynamic_cast<const CObservationInstances*>(observation.get()))
 		{
 			auto& instances = result[seen->timestamp];
+			instances.clear();  // what a file tells twice counts once
 			for (const Instance& instance : seen->instances)
-				if (instance.trueObject) instances.push_back(instance);
+				if (instance.trueObject)
+					instances.push_back({*instance.trueObject, instance.box, instance.mask});
 			any = any || !instances.empty();
 		}
 	if (!any)
@@ -43,12 +50,13 @@ TrueInstances readTrueInstances(const std::string& rawlog)
 
 template <typename PixelsOf>
 TrueFrame trueFrameOf(
-	mrpt::Clock::time_point time, const std::vector<Instance>& instances, const PixelsOf& pixelsOf)
+	mrpt::Clock::time_point time, const std::vector<TrueInstance>& instances,
+	const PixelsOf& pixelsOf)
 {
 	TrueFrame frame;
 	frame.time = time;
-	for (const Instance& instance : instances)
-		frame.boxes.push_back({*instance.trueObject, instance.box, pixelsOf(instance.mask)});
+	for (const TrueInstance& instance : instances)
+		frame.boxes.push_back({instance.object, instance.box, pixelsOf(instance.mask)});
 	return frame;
 }
 
@@ -58,6 +66,19 @@ std::size_t measuredPixels(const InstanceMask& mask, const cv::Mat& depth)
 	for (const auto& run : mask.runs())
 		for (int u = run.begin; u < run.end; ++u) count += depth.at<float>(run.row, u) > 0;
 	return count;
+}
+
+/** Empty for a frame that a run skips, too: images are missing or damaged. */
+cv::Mat depthOf(const mrpt::obs::CObservation3DRangeScan& scan)
+{
+	try
+	{
+		return rgbdFrameFrom(scan).depth;
+	}
+	catch (const InputError&)
+	{
+		return {};
+	}
 }
 
 /** Number of the pose at this time. */
@@ -101,7 +122,8 @@ std::vector<TrueFrame> readTrueFrames(const std::string& rawlog, const std::stri
 		if (!scan) continue;
 		const auto found = truth.lower_bound(scan->timestamp - kRounding);
 		if (found == truth.end() || found->first > scan->timestamp + kRounding) continue;
-		const cv::Mat depth = rgbdFrameFrom(*scan).depth;
+		const cv::Mat depth = depthOf(*scan);
+		if (depth.empty()) continue;
 		const auto measured = [&](const InstanceMask& mask)
 		{
 			if (mask.imageSize() != depth.size())
@@ -112,6 +134,9 @@ std::vector<TrueFrame> readTrueFrames(const std::string& rawlog, const std::stri
 		};
 		frames.push_back(trueFrameOf(found->first, found->second, measured));
 	}
+	std::stable_sort(
+		frames.begin(), frames.end(),
+		[](const TrueFrame& a, const TrueFrame& b) { return a.time < b.time; });
 	if (frames.empty())
 		throw InputError(
 			images + " with " + rawlog +

@@ -17,22 +17,29 @@ double inverseVariance(double sigma)
 	return 1 / std::pow(std::max(sigma, kLeastSigma), 2);
 }
 
-PoseSigma sigmaOf(const Eigen::Matrix<double, 6, 6>& covariance)
+/** From a to b, by the inverse variances; sigma is what the mean has. */
+struct WeightedMean
 {
-	return {
-		std::sqrt(covariance.topLeftCorner<3, 3>().trace() / 3),
-		std::sqrt(covariance.bottomRightCorner<3, 3>().trace() / 3)};
-}
+	CPose3D pose;
+	PoseSigma sigma;
+};
 
-/** The pose that many parts of the way from the identity. */
-CPose3D partOf(const CPose3D& pose, double translation, double rotation)
+WeightedMean weightedMean(
+	const CPose3D& a, const PoseSigma& sigmaA, const CPose3D& b, const PoseSigma& sigmaB)
 {
 	using SO3 = mrpt::poses::Lie::SO<3>;
-	const auto angle = SO3::log(pose.getRotationMatrix());
-	return CPose3D(
-		SO3::exp(mrpt::math::CVectorFixedDouble<3>(angle * rotation)),
-		mrpt::math::TVector3D(
-			pose.x() * translation, pose.y() * translation, pose.z() * translation));
+	const double translation = inverseVariance(sigmaB.translation);
+	const double rotation = inverseVariance(sigmaB.rotation);
+	const double allTranslation = translation + inverseVariance(sigmaA.translation);
+	const double allRotation = rotation + inverseVariance(sigmaA.rotation);
+
+	const CPose3D T_a_b = (-a) + b;
+	const double shareT = translation / allTranslation;
+	const auto turn = SO3::log(T_a_b.getRotationMatrix());
+	const CPose3D part(
+		SO3::exp(mrpt::math::CVectorFixedDouble<3>(turn * (rotation / allRotation))),
+		mrpt::math::TVector3D(T_a_b.x() * shareT, T_a_b.y() * shareT, T_a_b.z() * shareT));
+	return {a + part, {1 / std::sqrt(allTranslation), 1 / std::sqrt(allRotation)}};
 }
 }  // namespace
 
@@ -40,24 +47,25 @@ void CameraCorrection::step(const OdometryEstimate& odometry)
 {
 	const CPose3D& T_previous_camera = odometry.T_previous_camera;
 	T_odometry_camera_ = (-T_previous_camera) + T_odometry_camera_ + T_previous_camera;
+	T_odometry_biased_ = (-T_previous_camera) + T_odometry_biased_ + T_previous_camera;
 	T_previous_camera_ = T_previous_camera_ + T_previous_camera;
-	stepSigma_ = stepSigma_ + sigmaOf(odometry.covariance);
+
+	const PoseSigma sigma = sigmaOf(odometry.covariance);
+	stepSigma_ = stepSigma_ + sigma;
+	poseSigma_ = {std::sqrt(0.5) * sigma.translation, std::sqrt(0.5) * sigma.rotation};
+	const bool isLost = odometry.status == OdometryEstimate::Status::Lost;
+	// The step behind a loss may mend it or not.
+	if (isLost || wasLost_) biasSigma_ = biasSigma_ + sigma;
+	wasLost_ = isLost;
 }
 
 void CameraCorrection::track(const FrameRegistration& tracked)
 {
-	const CPose3D T_odometry_moved = T_odometry_camera_ + (-tracked.T_seen_expected);
-	const PoseSigma moved = sigma_ + tracked.sigma;
-	const double ofOnePose = std::sqrt(0.5);
-	const PoseSigma odometry{ofOnePose * stepSigma_.translation, ofOnePose * stepSigma_.rotation};
-
-	const double translation = inverseVariance(moved.translation);
-	const double rotation = inverseVariance(moved.rotation);
-	const double bothTranslation = translation + inverseVariance(odometry.translation);
-	const double bothRotation = rotation + inverseVariance(odometry.rotation);
-	T_odometry_camera_ =
-		partOf(T_odometry_moved, translation / bothTranslation, rotation / bothRotation);
-	sigma_ = {1 / std::sqrt(bothTranslation), 1 / std::sqrt(bothRotation)};
+	const auto mean = weightedMean(
+		T_odometry_biased_, poseSigma_ + biasSigma_,
+		T_odometry_camera_ + (-tracked.T_seen_expected), sigma_ + tracked.sigma);
+	T_odometry_camera_ = mean.pose;
+	sigma_ = mean.sigma;
 	T_previous_camera_ = CPose3D();
 	stepSigma_ = {};
 }
@@ -66,6 +74,11 @@ void CameraCorrection::localize(const FrameRegistration& mapped)
 {
 	T_odometry_camera_ = T_odometry_camera_ + (-mapped.T_seen_expected);
 	sigma_ = mapped.sigma;
+	if (mapped.pairs == 0) return;
+	const auto bias =
+		weightedMean(T_odometry_biased_, biasSigma_, T_odometry_camera_, sigma_ + poseSigma_);
+	T_odometry_biased_ = bias.pose;
+	biasSigma_ = bias.sigma;
 }
 
 }  // namespace semloop

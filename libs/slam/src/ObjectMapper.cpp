@@ -9,6 +9,9 @@ namespace
 {
 using Embeddings = std::vector<std::vector<float>>;
 
+// A pose that is known better leaves nearly all of an object's pixels before their depth [m, rad].
+constexpr double kCertain = 0.01;
+
 /** The detections as Eq. (3) wants them; owns what the items point to. */
 struct Detections
 {
@@ -54,7 +57,10 @@ std::vector<ObjectObservation> ObjectMapper::update(
 	for (const auto& t : tracked)
 		if (t.confirmed) confirmed.push_back(t);
 
-	auto predicted = predict(frame, T_world_expected, localMap);
+	// Measured depth hides what a camera that is off would put behind it: not before it is registered.
+	const bool isUncertain = sigma.translation > kCertain || sigma.rotation > kCertain;
+	auto predicted =
+		predict(frame, T_world_expected, isUncertain ? cv::Mat() : frame.depth, localMap);
 	Detections detections;
 	{
 		const StageTimings::Scope timing(timings_, "registration");
@@ -64,8 +70,8 @@ std::vector<ObjectObservation> ObjectMapper::update(
 			registrationOptions_);
 	}
 	const auto T_world_camera = T_world_expected + (-registered_.T_seen_expected);
-	if (registered_.T_seen_expected != mrpt::poses::CPose3D())
-		predicted = predict(frame, T_world_camera, localMap);
+	if (isUncertain || registered_.T_seen_expected != mrpt::poses::CPose3D())
+		predicted = predict(frame, T_world_camera, frame.depth, localMap);
 
 	std::vector<std::optional<ObjectId>> objects(confirmed.size());
 	{
@@ -92,11 +98,11 @@ std::vector<ObjectObservation> ObjectMapper::update(
 }
 
 std::vector<PredictedObject> ObjectMapper::predict(
-	const RgbdFrame& frame, const mrpt::poses::CPose3D& T_world_camera,
+	const RgbdFrame& frame, const mrpt::poses::CPose3D& T_world_camera, const cv::Mat& depth,
 	const LocalMap& localMap) const
 {
 	const StageTimings::Scope timing(timings_, "prediction");
-	return map_->predict(frame.camera, T_world_camera, frame.depth, localMap.objects());
+	return map_->predict(frame.camera, T_world_camera, depth, localMap.objects());
 }
 
 std::optional<ObjectObservation> ObjectMapper::fuse(

@@ -35,9 +35,9 @@ void SemanticSlam::process(const SlamFrame& input)
 		const StageTimings::Scope odometryTiming(timings_, "odometry");
 		odometry = odometry_->track(frame);
 	}
+	correction_.step(odometry);
 	addCamera(frame, odometry);
 	localMap_.advance(odometry.T_previous_camera);
-	correction_.step(odometry);
 	if (!input.instances) return;
 	const CObservationInstances& instances = *input.instances;
 	adoptLabels(instances);

@@ -11,7 +11,7 @@ namespace semloop
 struct SurfaceExtent
 {
 	mrpt::math::TPoint3D centre;  //!< median, each coordinate by itself [m]
-	double radius = 0;            //!< root mean square distance of the points from it [m]
+	double radius = 0;            //!< median distance of the points from it [m]
 };
 
 /** Empty of no point. */

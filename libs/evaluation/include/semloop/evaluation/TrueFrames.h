@@ -30,7 +30,7 @@ struct TrueFrame
 /** The instances with a true object in every CObservationInstances of a rawlog, by time. Throws
  *  InputError when the rawlog cannot be read or no instance in it has a true object.
  *  @param images the rawlog with the frames that the run saw: only pixels whose depth was measured
- *  count, and frames without a depth image of their time (within 1 ms) are left out. Empty: all pixels
+ *  count, and frames without a usable image of their time (within 1 ms) are left out. Empty: all pixels
  *  count. Throws InputError when the sizes differ. */
 std::vector<TrueFrame> readTrueFrames(const std::string& rawlog, const std::string& images = {});
 

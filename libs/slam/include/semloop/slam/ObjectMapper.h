@@ -56,7 +56,7 @@ public:
 
 private:
 	std::vector<PredictedObject> predict(
-		const RgbdFrame& frame, const mrpt::poses::CPose3D& T_world_camera,
+		const RgbdFrame& frame, const mrpt::poses::CPose3D& T_world_camera, const cv::Mat& depth,
 		const LocalMap& localMap) const;
 	/** Fuses the detection into its object, or makes one; empty when neither was possible. */
 	std::optional<ObjectObservation> fuse(

@@ -109,7 +109,7 @@ private:
 	mrpt::poses::CPose3D T_world_firstCamera_;
 	mrpt::poses::CPose3D T_world_odom_;  //!< follows the loop closures
 	mrpt::poses::CPose3D T_odom_camera_;
-	CameraCorrection correction_;              //!< of that, by the objects in view
+	CameraCorrection correction_;              //!< of the odometry's pose, by the objects in view
 	std::optional<mrpt::math::TVector3D> up_;  //!< in the robot's frame, from the accelerometer
 	DriftPrior driftPrior_;
 	Trajectory odometryTrajectory_;
