@@ -83,9 +83,18 @@ void writeDepth(CArchive& out, const std::optional<DepthCrop>& crop)
 	out.WriteBufferFixEndianness(depth.ptr<uint16_t>(), depth.total());
 }
 
+/** Whether an optional part follows. A damaged byte must not become a bool. */
+bool readIsThere(CArchive& in)
+{
+	const auto byte = in.ReadAs<uint8_t>();
+	if (byte > 1)
+		throw InputError("damaged: neither yes nor no where an instance's parts are announced");
+	return byte == 1;
+}
+
 std::optional<DepthCrop> readDepth(CArchive& in, cv::Size size)
 {
-	if (!in.ReadAs<bool>()) return std::nullopt;
+	if (!readIsThere(in)) return std::nullopt;
 	DepthCrop crop;
 	in >> crop.unit;
 	crop.depth.create(size, CV_16UC1);
@@ -101,7 +110,7 @@ void writeTrueObject(CArchive& out, const std::optional<uint32_t>& trueObject)
 
 std::optional<uint32_t> readTrueObject(CArchive& in)
 {
-	if (!in.ReadAs<bool>()) return std::nullopt;
+	if (!readIsThere(in)) return std::nullopt;
 	return in.ReadAs<uint32_t>();
 }
 
