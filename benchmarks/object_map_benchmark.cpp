@@ -1,6 +1,8 @@
 #include <benchmark/benchmark.h>
 #include <semloop/object_map/TsdfVolume.h>
 
+#include <map>
+
 #include "../tests/object_map/AnalyticScene.h"
 
 // A desk-like scene: two rows of spheres and boxes before a wall, mapped from seven views on an arc.
@@ -77,6 +79,15 @@ Scene makeScene(int columns)
 	return scene;
 }
 
+/** Rendered once, not at every round of the benchmark's calibration. */
+const Scene& sceneOf(std::int64_t objects)
+{
+	static std::map<std::int64_t, Scene> scenes;
+	const auto known = scenes.find(objects);
+	if (known != scenes.end()) return known->second;
+	return scenes.emplace(objects, makeScene(static_cast<int>(objects) / 2)).first->second;
+}
+
 void report(benchmark::State& state, const Scene& scene)
 {
 	double bytes = 0, blocks = 0, voxelSize = 0;
@@ -96,7 +107,7 @@ void report(benchmark::State& state, const Scene& scene)
 
 void integrateObjects(benchmark::State& state)
 {
-	Scene scene = makeScene(static_cast<int>(state.range(0)) / 2);
+	Scene scene = sceneOf(state.range(0));
 	for (auto _ : state)
 		for (auto& object : scene.objects)
 			object.volume.integrate(
@@ -107,7 +118,7 @@ BENCHMARK(integrateObjects)->Arg(10)->Unit(benchmark::kMillisecond);
 
 void raycastObjects(benchmark::State& state)
 {
-	const Scene scene = makeScene(static_cast<int>(state.range(0)) / 2);
+	const Scene& scene = sceneOf(state.range(0));
 	for (auto _ : state)
 		for (const auto& object : scene.objects)
 			benchmark::DoNotOptimize(object.volume.raycast(
@@ -118,7 +129,7 @@ BENCHMARK(raycastObjects)->Arg(20)->Arg(10)->Unit(benchmark::kMillisecond);
 
 void readObject(benchmark::State& state, const std::function<void(const TsdfVolume&)>& read)
 {
-	const Scene scene = makeScene(5);
+	const Scene& scene = sceneOf(10);
 	for (auto _ : state) read(scene.objects[0].volume);
 	state.counters["blocks"] = static_cast<double>(scene.objects[0].volume.blockCount());
 	state.counters["points"] = static_cast<double>(scene.objects[0].volume.surface().size());

@@ -104,6 +104,37 @@ TEST(SemanticSlam, ALoopClosureTakesOutMostOfTheDrift)
 	EXPECT_LT(after, 0.5 * before);
 }
 
+TEST(SemanticSlam, BehindALoopClosureTheCameraGoesOnFromItsCorrectedPose)
+{
+	const TemporaryFolder folder;
+	RunOptions options;
+	options.objects = 60;
+	const RecordedRun recorded = recordRun(folder, options);
+	auto config = runConfiguration(recorded, 0.8);
+	config.write("odometry", "noise", 0.1);
+	mrpt::system::COutputLogger logger;
+	logger.logging_enable_console_output = false;
+	StageTimings timings;
+	SemanticSlam slam(config, logger, timings);
+	FrontEnd front = makeFrontEnd(config);
+	FrameSource source(recorded.rawlog, front.segmenter, front.embedder, 2, timings);
+	const auto isClosed = [&]
+	{
+		return !slam.loops().empty() &&
+			   slam.loops().back().verdict.decision == LoopVerdict::Decision::Accepted;
+	};
+	auto frame = source.next();
+	for (; frame && !isClosed(); frame = source.next()) slam.process(*frame);
+	ASSERT_TRUE(frame.has_value());
+	frame->instances.reset();  // the objects would correct the pose anew
+	slam.process(*frame);
+	const auto stepOf = [](const Trajectory& t)
+	{ return (t.end() - 1)->pose - (t.end() - 2)->pose; };
+	const CPose3D step = stepOf(slam.trajectory()), odometry = stepOf(slam.odometryTrajectory());
+	EXPECT_LT((step - odometry).norm(), 1e-9);
+	EXPECT_GT((slam.trajectory().back().pose - slam.odometryTrajectory().back().pose).norm(), 0.3);
+}
+
 TEST(SemanticSlam, AssociationsFollowTheMergesOfALoopClosure)
 {
 	const TemporaryFolder folder;

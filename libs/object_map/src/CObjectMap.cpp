@@ -14,6 +14,16 @@ namespace
 using mrpt::math::TPoint3D;
 using mrpt::poses::CPose3D;
 
+/** Range of the p-th to the (1 - p)-th quantile of the values; they must not be empty. */
+std::pair<double, double> robustRange(std::vector<double> values, double p)
+{
+	const auto rank = std::ptrdiff_t(p * double(values.size() - 1));
+	std::nth_element(values.begin(), values.begin() + rank, values.end());
+	const double low = values[std::size_t(rank)];
+	std::nth_element(values.begin(), values.end() - 1 - rank, values.end());
+	return {low, *(values.end() - 1 - rank)};
+}
+
 struct Extent
 {
 	TPoint3D centre;

@@ -140,28 +140,6 @@ std::vector<mrpt::math::TPoint3D> samplePoints(
 }
 }  // namespace
 
-std::pair<double, double> robustRange(std::vector<double> values, double p)
-{
-	const auto rank = std::ptrdiff_t(p * double(values.size() - 1));
-	std::nth_element(values.begin(), values.begin() + rank, values.end());
-	const double low = values[std::size_t(rank)];
-	std::nth_element(values.begin(), values.end() - 1 - rank, values.end());
-	return {low, *(values.end() - 1 - rank)};
-}
-
-mrpt::math::TPoint3D TrimmedMask::centre() const
-{
-	mrpt::math::TPoint3D centre;
-	std::vector<double> values(points.size());
-	for (int axis = 0; axis < 3; ++axis)
-	{
-		for (std::size_t i = 0; i < points.size(); ++i) values[i] = points[i][axis];
-		const auto [low, high] = robustRange(values, 0.02);
-		centre[axis] = 0.5 * (low + high);
-	}
-	return centre;
-}
-
 cv::Mat TrimmedMask::certainDepth(const cv::Mat& depth) const
 {
 	if (uncertain.empty()) return depth;

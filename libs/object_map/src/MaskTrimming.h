@@ -21,9 +21,6 @@ struct TrimmedMask
 	cv::Mat uncertain;  //!< CV_8UC1 of box's size, not 0 = uncertain; empty: none
 	cv::Rect box;
 
-	/** The middle of the points' robust box, in the camera's frame. */
-	mrpt::math::TPoint3D centre() const;
-
 	/** Measurements that say something: the uncertain pixels are 0. Without any, shares the image. */
 	cv::Mat certainDepth(const cv::Mat& depth) const;
 };
@@ -38,8 +35,5 @@ struct TrimmedMask
 std::optional<TrimmedMask> trimMask(
 	const InstanceMask& mask, const cv::Mat& depth, const mrpt::img::TCamera& camera, int minPixels,
 	double maxDepth);
-
-/** Range of the p-th to the (1 - p)-th quantile of the values; they must not be empty. */
-std::pair<double, double> robustRange(std::vector<double> values, double p);
 
 }  // namespace semloop

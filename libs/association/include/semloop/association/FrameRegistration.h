@@ -52,7 +52,8 @@ struct FrameRegistration
  *
  *  c and r being centre and radius of the visible surfaces: what moves the centre of a large one is that
  *  other parts of it are seen. The one with the least sum over one-to-one pairs, each truncated at 11.3
- *  (99 % of chi^2 with three degrees of freedom), wins and is fitted to its inliers.
+ *  (99 % of chi^2 with three degrees of freedom), wins and is fitted to its inliers. Pairs
+ *  beyond the 40 most similar do not count.
  *
  *  The pose stays as expected when fewer than minPairs agree, or when the motion explains what is seen by
  *  less than 22.5 better (99.9 % with six) than no motion does, or than one that pairs all differently: a
