@@ -25,7 +25,7 @@ WHOLE_MAP = "local_map.length=1000"
 
 
 def run_of(opts, scene, seed, method, key, level):
-    prefix = common.prefix_of(opts, scene, seed)
+    prefix = common.prefix_of(opts, scene, seed, common.SMALL)
     # Without noise both kinds of noise are the same run.
     noise = f"{key}{level}" if level else "exact"
     folder = f"{opts.out}/association/{scene}-{seed}-{method.replace(' ', '-')}-{noise}"
@@ -80,10 +80,10 @@ def plot(opts, noises, results):
 
 
 def main():
-    opts = common.options(__doc__)
+    opts = common.options(__doc__, seeds="1,2,3")
     noises = [(noise, key, unit, levels[1:4:2] if opts.quick else levels)
               for noise, key, unit, levels in NOISES]
-    common.simulate(opts, SCENES)
+    common.simulate(opts, SCENES, common.SMALL)
     results = {(noise, scene, method, level):
                [run_of(opts, scene, seed, method, key, level) for seed in opts.seeds]
                for noise, key, _, levels in noises for level in levels
@@ -100,7 +100,7 @@ def main():
         f"embeddings; loop closure is off (`{NO_LOOPS}`), the whole map "
         f"is landmarks (`{WHOLE_MAP}`), Eq. (1)'s gate is 0.75 (`{GATE}`), the rest is "
         f"`{common.CONFIG}`. "
-        + common.SIMULATION_TEXT,
+        + common.simulation_text(common.SMALL),
         f"As published means without the frame's registration (`{UNREGISTERED}`).",
         "Accuracy is the paper's: boxes that went into the object assigned to their real one / true "
         "boxes of which the camera measured enough "

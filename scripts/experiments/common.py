@@ -17,13 +17,11 @@ import statistics
 import subprocess
 import sys
 
-# Sec. IV-B counts frames of a 30 Hz camera. The scenes are rendered at a third of that, small and
-# without colour, which nothing but the colour of the meshes depends on.
-RATE = 10
-FRAMES_APART = 500 * RATE // 30
-SIMULATION = ["--no-color", "--size", "320x240", "--set", f"camera.rate={RATE}", "--threads", "1"]
-SIMULATION_TEXT = ("The scenes are simulated with `rawlog-simulate --no-color --size 320x240 "
-                   f"--set camera.rate={RATE}`, each seed with other furniture, places and noise.")
+# Nothing but the colour of the meshes depends on the colour images.
+SIMULATION = ["--no-color"]
+# For experiments of many runs: a quarter of the pixels, a third of the frames.
+SMALL = [*SIMULATION, "--size", "320x240", "--set", "camera.rate=10"]
+FRAMES_APART = 500  # Sec. IV-B
 CONFIG = "config_ini/simulated.ini"
 # Smaller objects are not observed: they cannot come into the map, see [object_map] min_pixels.
 MINIMUM_PIXELS = 64
@@ -31,18 +29,18 @@ BULKY = ["map.objmap", "map.simplemap", "scene.3Dscene", "pose_graph.g2o", "obje
 QUICK_FRAMES = 200
 
 
-def options(description, arguments=None):
+def options(description, arguments=None, seeds="1,2,3,4,5"):
     parser = argparse.ArgumentParser(description=description)
     parser.add_argument("--bin", default="build/bin", help="folder of the programs")
     parser.add_argument("--out", default="out/experiments", help="folder for the runs")
     parser.add_argument("--results", help="folder for tables and plots (doc/results)")
-    parser.add_argument("--seeds", default="1,2,3", help="of the simulation")
+    parser.add_argument("--seeds", help=f"of the simulation ({seeds})")
     parser.add_argument("--jobs", type=int, default=os.cpu_count(), help="runs at a time")
     parser.add_argument("--quick", action="store_true",
                         help="one seed, short runs, results in OUT/quick: to try the scripts")
     parser.add_argument("--sequence", help="rawlog of a real sequence, with its sidecar")
     result = parser.parse_args(arguments)
-    result.seeds = [int(seed) for seed in re.split(r"[, ]+", result.seeds.strip())]
+    result.seeds = [int(seed) for seed in re.split(r"[, ]+", (result.seeds or seeds).strip())]
     if result.quick:
         result.seeds = result.seeds[:1]
         result.out = os.path.join(result.out, "quick")
@@ -152,22 +150,28 @@ def program(opts, name):
     return os.path.join(opts.bin, name)
 
 
-def simulation(opts, scene, seed):
-    """The run that simulates a scene; prefix_of() is what its files begin with."""
-    folder = f"{opts.out}/scenes/{scene}-{seed}"
+def prefix_of(opts, scene, seed, camera=SIMULATION):
+    """What the files of a simulated scene begin with."""
+    size = "scenes-small" if camera is SMALL else "scenes"
+    return f"{opts.out}/{size}/{scene}-{seed}/scene"
+
+
+def simulation(opts, scene, seed, camera):
+    prefix = prefix_of(opts, scene, seed, camera)
     command = [program(opts, "rawlog-simulate"), f"config_ini/scenes/{scene}.ini",
-               f"{folder}/scene.rawlog", "--seed", str(seed), *SIMULATION]
+               f"{prefix}.rawlog", "--seed", str(seed), *camera, "--threads", "1"]
     if opts.quick:
         command += ["--frames", str(QUICK_FRAMES)]
-    return Run(folder, [command])
+    return Run(os.path.dirname(prefix), [command])
 
 
-def prefix_of(opts, scene, seed):
-    return f"{opts.out}/scenes/{scene}-{seed}/scene"
+def simulate(opts, scenes, camera=SIMULATION):
+    execute([simulation(opts, scene, seed, camera) for scene in scenes for seed in opts.seeds], opts)
 
 
-def simulate(opts, scenes):
-    execute([simulation(opts, scene, seed) for scene in scenes for seed in opts.seeds], opts)
+def simulation_text(camera=SIMULATION):
+    return (f"The scenes are simulated with `rawlog-simulate {' '.join(camera)}`, each seed with "
+            "other furniture, places and noise. ")
 
 
 def trajectory_commands(opts, folder, truth):

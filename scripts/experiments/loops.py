@@ -50,14 +50,13 @@ def main():
     columns = ["attempts", "detections", "true", "false", "true, verified", "false, verified"]
     common.write(
         opts, "loops.md", "# Loop detection (Sec. IV-B, Table I)",
-        common.SIMULATION_TEXT + " They are mapped from noisy odometry and noisy instances with "
+        common.simulation_text() + "They are mapped from noisy odometry and noisy instances with "
         f"`{common.CONFIG}`, once as it is (*default*) and once with the paper's rule that half of "
         "the query's edges are matched (*as published*: `loop_detection.min_edge_share=0.5`). The "
         "corridor of identical rooms and `no_loop` are walked through once, nothing is seen again: "
         "the right number of loops is zero.",
         f"`semloop-eval loops --frames-apart {common.FRAMES_APART} --minimum-pixels "
-        f"{common.MINIMUM_PIXELS}` judges: the paper's 500 frames, at {common.RATE} Hz; smaller objects "
-        "cannot come into the map. *Detections* are what the graph matcher finds, *verified* what is "
+        f"{common.MINIMUM_PIXELS}` judges, by the paper's rule; smaller objects cannot come into the map. *Detections* are what the graph matcher finds, *verified* what is "
         "left after the geometric verification and the alignment of the surfaces. A real sequence "
         "has no true objects, so its detections are only counted.",
         "## All scenes and seeds", common.table(["rule", *columns], totals),

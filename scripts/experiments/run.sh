@@ -2,7 +2,7 @@
 # make experiments: the paper's experiments on simulated scenes; writes tables and plots to doc/results.
 # Run again, it does only what is missing or was made with other programs.
 #
-#   SEEDS      of the simulation (1,2,3)
+#   SEEDS      of the simulation (1,2,3,4,5; 1,2,3 for the association)
 #   JOBS       runs at a time
 #   QUICK      1: one seed and short runs, results in OUT/quick/results: to try the scripts
 #   TUM MODEL  folder of a TUM RGB-D sequence and segmentation network (EMBEDDING is optional): adds
@@ -10,10 +10,11 @@
 #   OUT        folder for the runs; BIN: where the programs are
 set -euo pipefail
 
-SEEDS=${SEEDS:-1,2,3} JOBS=${JOBS:-$(nproc)} QUICK=${QUICK:-} TUM=${TUM:-} MODEL=${MODEL:-}
+SEEDS=${SEEDS:-} JOBS=${JOBS:-$(nproc)} QUICK=${QUICK:-} TUM=${TUM:-} MODEL=${MODEL:-}
 EMBEDDING=${EMBEDDING:-} OUT=${OUT:-out/experiments} BIN=${BIN:-build/bin}
 here=$(dirname "$0")
-options=(--bin "$BIN" --out "$OUT" --seeds "$SEEDS" --jobs "$JOBS")
+options=(--bin "$BIN" --out "$OUT" --jobs "$JOBS")
+[ -z "$SEEDS" ] || options+=(--seeds "$SEEDS")
 [ -z "$QUICK" ] || [ "$QUICK" = 0 ] || options+=(--quick)
 
 if [ -n "$TUM" ]; then

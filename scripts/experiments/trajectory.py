@@ -40,7 +40,7 @@ def main():
             for scene in SCENES for seed, run in zip(opts.seeds, groups[scene])]
     common.write(
         opts, "trajectory.md", "# Trajectories (Sec. IV-D, Table II)",
-        common.SIMULATION_TEXT + " They are mapped from noisy odometry and noisy instances with "
+        common.simulation_text() + "They are mapped from noisy odometry and noisy instances with "
         f"`{common.CONFIG}`. Absolute trajectory error after the best rigid alignment, RMSE in metres "
         "(`semloop-eval trajectory`); median over the seeds (least - greatest).",
         common.table(["scene", *(title for title, _ in FILES), "loops closed"], rows),
