@@ -1,13 +1,6 @@
 # Installs semloop into a folder of its own, builds tests/project/outside against it there, and runs
 # what came out. Arguments: BUILD_DIR, SOURCE_DIR, WORK_DIR, GENERATOR, CXX_FLAGS.
-function(run)
-  execute_process(COMMAND ${ARGN} OUTPUT_VARIABLE output ERROR_VARIABLE output RESULT_VARIABLE result)
-  if(NOT result EQUAL 0)
-    string(JOIN " " command ${ARGN})
-    message(FATAL_ERROR "${command}\nended with ${result}:\n${output}")
-  endif()
-  set(run_output "${output}" PARENT_SCOPE)
-endfunction()
+include(${CMAKE_CURRENT_LIST_DIR}/Run.cmake)
 
 file(REMOVE_RECURSE ${WORK_DIR})
 set(prefix ${WORK_DIR}/prefix)
