@@ -42,9 +42,10 @@ experiments: build ## the paper's experiments into doc/results: [SEEDS=1,2,3] [T
 		EMBEDDING='$(EMBEDDING)' OUT='$(OUT)' BIN='$(BUILD_DIR)/bin' scripts/experiments/run.sh
 
 picture: OUT ?= out/demo
-picture: ## draws what the last make demo simulated and mapped: OUT/apartment.png
+picture: ## draws what the last make demo simulated and mapped: OUT/apartment.png, OUT/objects.png
 	@scripts/install-dependencies.sh python3-matplotlib
 	@scripts/picture.py $(OUT)/result $(OUT)/apartment $(OUT)/apartment.png
+	@scripts/objects_picture.py --bin $(BUILD_DIR)/bin $(OUT)/result $(OUT)/apartment $(OUT)/objects.png
 
 test-sanitize: dependencies ## runs all tests under AddressSanitizer and UndefinedBehaviorSanitizer
 	cmake -S . -B $(BUILD_DIR)-sanitize -G Ninja -DCMAKE_BUILD_TYPE=RelWithDebInfo \
