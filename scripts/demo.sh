@@ -1,8 +1,8 @@
 #!/usr/bin/env bash
 # make demo: simulates a flat, or takes a TUM RGB-D sequence, maps it and says how well.
 #
-#   DATA       folder of a sequence (rgb.txt, depth.txt, ...); without it, and without a sequence in
-#              $SEMLOOP_DATA, the flat is simulated
+#   DATA       folder of a sequence (rgb.txt, depth.txt, ...); without it, the one in $SEMLOOP_DATA if
+#              there is a network, too, else the flat is simulated
 #   MODEL      segmentation network for DATA; see doc/segmentation-networks.md
 #   EMBEDDING  optional network for the objects' appearance
 #   SIMULATE   1: the simulation, whatever $SEMLOOP_DATA has
@@ -22,7 +22,7 @@ make demo DATA=<folder> MODEL=<net.onnx> needs a sequence and a segmentation net
   MODEL  export a YOLO-seg network to ONNX as doc/segmentation-networks.md shows (EMBEDDING=<net.onnx> is optional)
 Without DATA, make demo simulates a flat and needs nothing.
 END
-  exit 1
+  exit 2
 }
 
 # A third of a camera's rate is enough for a walk, and the whole demo takes two minutes.
@@ -49,14 +49,16 @@ sequence() {
   frames_apart=500
 }
 
+shared=${SEMLOOP_DATA:-/dev/null}
+if [ -z "$MODEL" ] && [ -f "$shared/models/yolo11n-seg-480x640.onnx" ]; then
+  MODEL=$shared/models/yolo11n-seg-480x640.onnx
+  appearance=$shared/models/mobilenetv1_imagenet_feat1024.onnx
+  [ -n "$EMBEDDING" ] || [ ! -f "$appearance" ] || EMBEDDING=$appearance
+fi
 if [ -n "$SIMULATE" ] && [ "$SIMULATE" != 0 ]; then
   DATA=''
-elif [ -z "$DATA" ] && [ -d "${SEMLOOP_DATA:-}/data/tum_fr1_desk" ]; then
-  DATA=$SEMLOOP_DATA/data/tum_fr1_desk
-fi
-if [ -n "$DATA" ] && [ -z "$MODEL" ] && [ -f "${SEMLOOP_DATA:-}/models/yolo11n-seg-480x640.onnx" ]; then
-  MODEL=$SEMLOOP_DATA/models/yolo11n-seg-480x640.onnx
-  EMBEDDING=${EMBEDDING:-$SEMLOOP_DATA/models/mobilenetv1_imagenet_feat1024.onnx}
+elif [ -z "$DATA" ] && [ -n "$MODEL" ] && [ -d "$shared/data/tum_fr1_desk" ]; then
+  DATA=$shared/data/tum_fr1_desk
 fi
 
 mkdir -p "$OUT"

@@ -6,6 +6,7 @@ import argparse
 import json
 import os
 import subprocess
+import sys
 
 
 def evaluate(program, *arguments):
@@ -13,10 +14,15 @@ def evaluate(program, *arguments):
     return json.loads(output.stdout)
 
 
+def number(value, digits=2):
+    """A dash where there was nothing to measure."""
+    return "-" if value is None else f"{value:.{digits}f}"
+
+
 def trajectory_rows(evaluator, result, truth):
     def error(name):
         ate = evaluate(evaluator, "trajectory", f"{result}/{name}", truth)["ate_m"]
-        return f"{ate['rmse']:.3f} m RMSE, {ate['max']:.2f} m at most"
+        return f"{number(ate['rmse'], 3)} m RMSE, {number(ate['max'])} m at most"
 
     yield "trajectory error of the odometry", error("trajectory_odometry.tum")
     yield "after semantic loop closure", error("trajectory.tum")
@@ -37,7 +43,7 @@ def object_rows(evaluator, result, truth):
     found = objects["true_objects_found"]
     yield "objects found", (f"{found} of {objects['true_objects']}, "
                             f"{objects['objects'] - found} too many")
-    yield "centres of these", f"{objects['centre_error_m']['median']:.2f} m off (median)"
+    yield "centres of these", f"{number(objects['centre_error_m']['median'])} m off (median)"
 
 
 def rows(options):
@@ -81,4 +87,9 @@ def main():
 
 
 if __name__ == "__main__":
-    main()
+    try:
+        main()
+    except FileNotFoundError as error:
+        sys.exit(f"demo_table.py: {error.filename}: no such file; make demo makes it")
+    except subprocess.CalledProcessError:
+        sys.exit(1)  # semloop-eval has said why

@@ -6,21 +6,22 @@
 RESULT is the folder of the run, PREFIX what the simulation's files begin with."""
 
 import argparse
-import glob
 import json
 import os
 import subprocess
 
-import numpy as np
+# First: it tells when numpy or matplotlib is missing.
+from picture_common import alignment, call_main, mesh_of, paired, read_objects, read_trajectory
 
-from picture import alignment, plt, read_objects, read_trajectory
+import matplotlib.collections
+import matplotlib.pyplot as plt
+import numpy as np
 
 
 def read_mesh(folder, number):
-    """Vertices and triangles of <number>_*.ply as semloop writes it: floats x y z nx ny nz, colour, lists."""
-    path = glob.glob(f"{folder}/{number}_*.ply")[0]
+    """Vertices and triangles of a PLY file as semloop writes it: floats x y z nx ny nz, colour, lists."""
     counts = {}
-    with open(path, "rb") as file:
+    with open(mesh_of(folder, number), "rb") as file:
         for line in file:
             words = line.decode("ascii").split()
             if words[0] == "element":
@@ -54,7 +55,7 @@ def draw_mesh(axis, vertices, triangles, rotation, centre, reach):
     shade = 0.25 + 0.75 * np.abs(normals @ light)
     order = np.argsort(corners[:, :, 2].mean(1))
     colors = shade[order, None] * np.array([[0.62, 0.76, 0.92]])
-    axis.add_collection(plt.matplotlib.collections.PolyCollection(
+    axis.add_collection(matplotlib.collections.PolyCollection(
         corners[order, :, :2], facecolors=colors, edgecolors=colors, linewidths=0.15,
         rasterized=True))
     axis.set(xlim=(-reach, reach), ylim=(-reach, reach), aspect="equal")
@@ -80,9 +81,9 @@ def main():
     options = parser.parse_args()
 
     labels = {thing["id"]: thing["label"] for thing in read_objects(options.result + "/objects.json")}
-    _, truth = read_trajectory(options.prefix + "_groundtruth.tum")
-    _, estimate = read_trajectory(options.result + "/trajectory.tum")
-    rotation, translation = alignment(estimate, truth)
+    truth = read_trajectory(options.prefix + "_groundtruth.tum")
+    estimate = read_trajectory(options.result + "/trajectory.tum")
+    rotation, translation = alignment(*paired(estimate, truth, options.result))
     pairs = []
     for found, true in matches_of(options):
         mesh = read_mesh(options.result + "/objects", found)
@@ -101,7 +102,7 @@ def main():
     for i, (label, mapped, true) in enumerate(shown):
         row, column = 2 * (i // options.columns), i % options.columns
         middle = 0.5 * (true[0].min(0) + true[0].max(0))
-        near = truth[np.argsort(np.linalg.norm(truth - middle, axis=1))[:200]]
+        near = truth[1][np.argsort(np.linalg.norm(truth[1] - middle, axis=1))[:200]]
         look = view_from((near - middle).mean(0))
         reach = 0.6 * np.linalg.norm(np.ptp(true[0], axis=0))
         draw_mesh(axes[row, column], *mapped, look, middle, reach)
@@ -113,4 +114,4 @@ def main():
 
 
 if __name__ == "__main__":
-    main()
+    call_main(main)

@@ -8,122 +8,25 @@ RESULT is the folder of the run, PREFIX what the simulation's files begin with."
 
 import argparse
 import configparser
-import csv
-import glob
-import gzip
-import json
 import math
-import struct
 
-import matplotlib
-import numpy as np
+# First: it tells when numpy or matplotlib is missing.
+from picture_common import (InstanceReader, alignment, call_main, paired, read_associations, read_objects,
+                            read_surface, read_trajectory)
 
-matplotlib.use("agg")
-import matplotlib.patches
+import matplotlib.colors
 import matplotlib.patheffects
 import matplotlib.pyplot as plt
+import numpy as np
 
 TRUTH, ODOMETRY, ESTIMATE = "#222222", "#d55e00", "#0072b2"
-
-
-# --- files --------------------------------------------------------------------------------------------
-
-def read_trajectory(path):
-    poses = np.loadtxt(path, comments="#")
-    return poses[:, 0], poses[:, 1:4]
-
-
-class InstanceReader:
-    """CObservationInstances of a rawlog, as MRPT serialises them (little endian): only the masks."""
-
-    POSE = b"mrpt::poses::CPose3D\x03"
-
-    def __init__(self, path):
-        with gzip.open(path) as file:
-            self.data = file.read()
-        self.at = 0
-
-    def take(self, layout):
-        values = struct.unpack_from("<" + layout, self.data, self.at)
-        self.at += struct.calcsize("<" + layout)
-        return values[0] if len(values) == 1 else values
-
-    def skip(self, size):
-        self.at += size
-
-    def end_of_object(self):
-        if self.take("B") != 0x88:
-            raise ValueError(f"no end of an object at byte {self.at - 1}: another version?")
-
-    def observations(self):
-        """A list of masks, each an array of runs (row, begin, end), for every frame."""
-        while self.at < len(self.data):
-            # Before the labels come time, camera and pose; the pose's 12 numbers are the last of it.
-            self.at = self.data.index(self.POSE, self.at) + len(self.POSE) + 12 * 8
-            self.end_of_object()
-            for _ in range(self.take("I")):
-                self.skip(self.take("I"))
-            yield [self.mask() for _ in range(self.take("I"))]
-            self.end_of_object()
-
-    def words(self):
-        count = self.take("I")
-        self.skip(2 * count)
-        return np.frombuffer(self.data, "<u2", count, self.at - 2 * count)
-
-    def mask(self):
-        self.skip(4 * 2 + 4)  # box, confidence
-        self.skip(8 * self.take("I"))  # label scores
-        self.words()  # embedding
-        runs = self.words().reshape(-1, 3)
-        if self.take("B"):
-            raise ValueError("instances with depth are not read here")
-        if self.take("B"):
-            self.skip(4)  # the true object
-        return runs
-
-
-def read_associations(path):
-    """{frame: {index of the instance: object}}"""
-    result = {}
-    with open(path, encoding="utf-8") as file:
-        for row in csv.DictReader(file):
-            result.setdefault(int(row["frame"]), {})[int(row["instance"])] = int(row["object"])
-    return result
-
-
-def read_objects(path):
-    with open(path, encoding="utf-8") as file:
-        return json.load(file)["objects"]
-
-
-def read_vertices(path):
-    """Of a binary PLY file whose first element is the vertices."""
-    types = {"float": "<f4", "uchar": "u1", "int": "<i4"}
-    fields, count, in_vertices = [], 0, False
-    with open(path, "rb") as file:
-        for line in file:
-            words = line.decode("ascii").split()
-            if words[0] == "element":
-                in_vertices = words[1] == "vertex"
-                count = int(words[2]) if in_vertices else count
-            elif words[0] == "property" and in_vertices:
-                fields.append((words[2], types[words[1]]))
-            elif words[0] == "end_header":
-                break
-        data = np.frombuffer(file.read(np.dtype(fields).itemsize * count), fields)
-    return np.stack([data["x"], data["y"], data["z"]], axis=1).astype(float)
-
-
-def read_surface(folder, thing):
-    """Vertices of an object's PLY file: <id>_<label>.ply, whatever the label is written like."""
-    return read_vertices(glob.glob(f"{folder}/{thing['id']}_*.ply")[0])
 
 
 def read_floor_plan(path):
     """Rooms (x, y, width, depth) and doors (x, y, width) of a scene's ini file."""
     ini = configparser.ConfigParser(inline_comment_prefixes=(";",), interpolation=None)
-    ini.read(path)
+    if not ini.read(path):
+        raise ValueError(f"{path}: no such file; config_ini/scenes has some scenes")
 
     def numbers(text):
         return [float(number) for number in text.replace(",", " ").split()]
@@ -132,17 +35,6 @@ def read_floor_plan(path):
              for s in ini.sections() if s.startswith("room.")]
     doors = [numbers(door) for door in ini["scene"].get("doors", "").split(",") if door.strip()]
     return rooms, doors
-
-
-# --- geometry -----------------------------------------------------------------------------------------
-
-def alignment(source, target):
-    """R, t of least squares with target = R source + t (Umeyama, without scale)."""
-    a, b = source - source.mean(0), target - target.mean(0)
-    u, _, vt = np.linalg.svd(b.T @ a)
-    flip = np.diag([1, 1, np.sign(np.linalg.det(u @ vt))])
-    rotation = u @ flip @ vt
-    return rotation, target.mean(0) - rotation @ source.mean(0)
 
 
 def outline(points):
@@ -178,7 +70,7 @@ def best_frame(masks, associations, known, pixels):
     def worth(frame):
         found = [len_of(masks[frame][i]) for i, thing in associations[frame].items() if thing in known]
         return sum(area > 0.008 * pixels for area in found), sum(found)
-    return max((f for f in associations if f < len(masks)), key=worth)
+    return max(associations, key=worth)
 
 
 def len_of(runs):
@@ -239,14 +131,15 @@ def draw_walls(axis, rooms, doors):
 
 
 def draw_map(axis, options, objects, colors):
-    _, truth = read_trajectory(options.prefix + "_groundtruth.tum")
+    truth = read_trajectory(options.prefix + "_groundtruth.tum")
     draw_walls(axis, *read_floor_plan(options.scene))
     for thing in read_objects(options.prefix + "_objects.json"):
         corners = outline(read_surface(options.prefix + "_objects", thing)[:, :2])
         axis.add_patch(plt.Polygon(corners, closed=True, fill=False, ec="#777777",
                                    ls=(0, (2, 2)), lw=0.8, zorder=3))
-    _, estimate = read_trajectory(options.result + "/trajectory.tum")
-    rotation, translation = alignment(estimate, truth)
+    estimate, odometry = (read_trajectory(f"{options.result}/{name}.tum")
+                          for name in ("trajectory", "trajectory_odometry"))
+    rotation, translation = alignment(*paired(estimate, truth, options.result))
     names = []
     for thing in sorted(objects, key=lambda o: o["position"][2]):
         surface = read_surface(options.result + "/objects", thing) @ rotation.T + translation
@@ -258,15 +151,14 @@ def draw_map(axis, options, objects, colors):
                      c=np.clip(colors[thing["label"]] * shade, 0, 1))
         names.append((np.prod(np.ptp(surface[:, :2], axis=0)), surface[:, :2].mean(0), thing["label"]))
     name_largest(axis, names)
-    _, odometry = read_trajectory(options.result + "/trajectory_odometry.tum")
-    rows = [("odometry", odometry, ODOMETRY, 1.3, "-"), ("semloop", estimate, ESTIMATE, 1.5, "-"),
-            ("truth", truth, TRUTH, 0.9, (0, (3, 2)))]
-    for name, path, color, width, style in rows:
-        rotation, translation = alignment(path, truth)
-        path = path @ rotation.T + translation
-        label = name if path is truth or name == "truth" else \
-            f"{name}: {rmse(path, truth):.2f} m off"
-        axis.plot(*path[:, :2].T, color=color, lw=width, ls=style, label=label, zorder=4)
+    for name, path, color, width in (("odometry", odometry, ODOMETRY, 1.3),
+                                     ("semloop", estimate, ESTIMATE, 1.5)):
+        here, there = paired(path, truth, options.result)
+        rotation, translation = alignment(here, there)
+        error = rmse(here @ rotation.T + translation, there)
+        axis.plot(*(path[1] @ rotation.T + translation)[:, :2].T, color=color, lw=width, zorder=4,
+                  label=f"{name}: {error:.2f} m off")
+    axis.plot(*truth[1][:, :2].T, color=TRUTH, lw=0.9, ls=(0, (3, 2)), label="truth", zorder=4)
     axis.set_aspect("equal")
     axis.autoscale_view()
     axis.margins(0.01)
@@ -288,11 +180,16 @@ def main():
     labels = {thing["id"]: thing["label"] for thing in objects}
     colors = colors_of(labels.values())
     masks = list(InstanceReader(options.prefix + "_instances.rawlog").observations())
-    associations = read_associations(options.result + "/associations.csv")
+    times, _ = read_trajectory(options.prefix + "_groundtruth.tum")
+    associations = read_associations(options.result + "/associations.csv", times)
+    if not associations:
+        raise ValueError(f"{options.result}/associations.csv: no object was mapped, nothing to draw")
     images = options.prefix + "_Images/color_{:06d}.jpg"
     frame = options.frame
     if frame is None:
         frame = best_frame(masks, associations, labels, plt.imread(images.format(0))[..., 0].size)
+    if not 0 <= frame < len(masks):
+        raise ValueError(f"--frame {frame}: the simulation has the frames 0 to {len(masks) - 1}")
     image = plt.imread(images.format(frame))
 
     figure = plt.figure(figsize=(9.4, 5.5))
@@ -310,4 +207,4 @@ def main():
 
 
 if __name__ == "__main__":
-    main()
+    call_main(main)

@@ -6,8 +6,10 @@ loop closure is off."""
 import statistics
 
 import common
-from common import Run, program
+from common import program
+from runs import Run, call_main, execute
 
+SEEDS = "1,2,3"
 SCENES = ["apartment", "office", "no_loop"]
 # With poses this noisy the embeddings have to do without an overlap of the masks.
 GATE = "association.gate=0.75"
@@ -41,6 +43,16 @@ def run_of(opts, scene, seed, method, key, level):
                 "--truth", f"{prefix}_truth_instances.rawlog", "--images", f"{prefix}.rawlog",
                 "--minimum-pixels", str(common.MINIMUM_PIXELS)]
     return Run(folder, [slam, (evaluate, "association.json")], remove=common.BULKY)
+
+
+def experiments(opts):
+    """The kinds of noise with their levels; the runs, one a seed, of (noise, scene, method, level)."""
+    noises = [(noise, key, unit, levels[1:4:2] if opts.quick else levels)
+              for noise, key, unit, levels in NOISES]
+    return noises, {(noise, scene, method, level):
+                    [run_of(opts, scene, seed, method, key, level) for seed in opts.seeds]
+                    for noise, key, _, levels in noises for level in levels
+                    for scene in SCENES for method in METHODS}
 
 
 def values(runs, key):
@@ -80,16 +92,11 @@ def plot(opts, noises, results):
 
 
 def main():
-    opts = common.options(__doc__, seeds="1,2,3")
-    noises = [(noise, key, unit, levels[1:4:2] if opts.quick else levels)
-              for noise, key, unit, levels in NOISES]
+    opts = common.options(__doc__, SEEDS)
+    noises, results = experiments(opts)
     common.simulate(opts, SCENES, common.SMALL)
-    results = {(noise, scene, method, level):
-               [run_of(opts, scene, seed, method, key, level) for seed in opts.seeds]
-               for noise, key, _, levels in noises for level in levels
-               for scene in SCENES for method in METHODS}
     runs = list({run.folder: run for group in results.values() for run in group}.values())
-    common.execute(runs, opts)
+    execute(runs, opts)
     plot(opts, noises, results)
     sections = [part for noise, _, unit, levels in noises
                 for part in tables(noise, levels, unit, results)]
@@ -111,4 +118,4 @@ def main():
 
 
 if __name__ == "__main__":
-    main()
+    call_main(main)

@@ -1,21 +1,13 @@
-"""What the experiments share: options, runs that are done once, statistics, tables, plots, footer.
-
-A run is a folder of OUT/ with what its programs left. Its run.json tells the commands, the commit and a
-fingerprint of the programs and configurations; a run whose commands and fingerprint are still the same
-is not done again, so an interrupted experiment goes on where it was."""
+"""What the experiments share: options, the scenes' runs, statistics, tables, plots, footer."""
 
 import argparse
-import concurrent.futures
-import glob
-import hashlib
-import json
 import os
 import re
-import shlex
-import shutil
 import statistics
-import subprocess
 import sys
+
+import runs
+from runs import Run, execute
 
 # Nothing but the colour of the meshes depends on the colour images.
 SIMULATION = ["--no-color"]
@@ -29,122 +21,54 @@ BULKY = ["map.objmap", "map.simplemap", "scene.3Dscene", "pose_graph.g2o", "obje
 QUICK_FRAMES = 200
 
 
-def options(description, arguments=None, seeds="1,2,3,4,5"):
-    parser = argparse.ArgumentParser(description=description)
+class Parser(argparse.ArgumentParser):
+    def error(self, message):
+        self.exit(2, f"{self.prog}: {message}; --help tells the options\n")
+
+
+def seed_list(text):
+    """Each once: two runs in one folder would be in each other's way."""
+    words = re.split(r"[, ]+", text.strip())
+    if not all(word.isdecimal() for word in words):
+        raise argparse.ArgumentTypeError(f"'{text}' is no list of whole numbers as 1,2,3")
+    return list(dict.fromkeys(map(int, words)))
+
+
+def positive(text):
+    if not text.isdecimal() or int(text) == 0:
+        raise argparse.ArgumentTypeError(f"'{text}' is no whole number from 1 on")
+    return int(text)
+
+
+def options(description, seeds="1,2,3,4,5"):
+    parser = Parser(description=description)
     parser.add_argument("--bin", default="build/bin", help="folder of the programs")
     parser.add_argument("--out", default="out/experiments", help="folder for the runs")
     parser.add_argument("--results", help="folder for tables and plots (doc/results)")
-    parser.add_argument("--seeds", help=f"of the simulation ({seeds})")
-    parser.add_argument("--jobs", type=int, default=os.cpu_count(), help="runs at a time")
+    parser.add_argument("--seeds", type=seed_list, default=seeds, help=f"of the simulation ({seeds})")
+    parser.add_argument("--jobs", type=positive, default=os.cpu_count(), help="runs at a time")
     parser.add_argument("--quick", action="store_true",
                         help="one seed, short runs, results in OUT/quick: to try the scripts")
     parser.add_argument("--sequence", help="rawlog of a real sequence, with its sidecar")
-    result = parser.parse_args(arguments)
-    result.seeds = [int(seed) for seed in re.split(r"[, ]+", (result.seeds or seeds).strip())]
+    result = parser.parse_args()
     if result.quick:
         result.seeds = result.seeds[:1]
         result.out = os.path.join(result.out, "quick")
     result.results = result.results or (
         os.path.join(result.out, "results") if result.quick else "doc/results")
-    result.fingerprint = fingerprint(result.bin)
+    if not os.path.exists(CONFIG):
+        raise RuntimeError(f"{CONFIG}: no such file; run this in the repository's folder")
+    for path in sequence_inputs(result):
+        if not os.path.exists(path):
+            raise RuntimeError(f"{path}: no such file; tum2rawlog and then rawlog-segment make it")
+    # Hours later the sources may be others, the programs are still these.
+    result.commit = runs.commit()
+    result.fingerprint = runs.fingerprint(result.bin)
     os.makedirs(result.results, exist_ok=True)
     return result
 
 
-# --- runs ---------------------------------------------------------------------------------------------
-
-def fingerprint(programs):
-    """Of everything that a result depends on besides its command."""
-    files = [os.path.join(programs, name)
-             for name in ("rawlog-simulate", "semloop-slam", "semloop-eval", "loop_closure_benchmark")]
-    files += glob.glob(os.path.join(programs, "../lib/libsemloop-*.so"))
-    files += glob.glob("config_ini/**/*.ini", recursive=True)
-    digest = hashlib.sha256()
-    for name in sorted(files):
-        with open(name, "rb") as file:
-            digest.update(name.encode() + file.read())
-    return digest.hexdigest()[:16]
-
-
-def text_of(*command):
-    return subprocess.run(command, check=True, stdout=subprocess.PIPE, text=True).stdout.strip()
-
-
-def commit():
-    """As git describe --always --dirty, but the results themselves may change."""
-    changed = text_of("git", "status", "--porcelain", "-uno", "--", ".", ":!doc/results")
-    return text_of("git", "describe", "--always") + ("-dirty" if changed else "")
-
-
-class Run:
-    """Commands, one after the other, that fill a folder; (command, file) keeps what it prints."""
-
-    def __init__(self, folder, commands, remove=()):
-        self.folder = folder
-        self.commands = [c if isinstance(c, tuple) else (c, None) for c in commands]
-        self.remove = remove
-
-    def path(self, name):
-        return os.path.join(self.folder, name)
-
-    def json(self, name):
-        with open(self.path(name), encoding="utf-8") as file:
-            return json.load(file)
-
-    def jsonl(self, name):
-        with open(self.path(name), encoding="utf-8") as file:
-            return [json.loads(line) for line in file]
-
-    def identity(self, print_):
-        return {"commands": [" ".join(map(shlex.quote, c)) for c, _ in self.commands],
-                "fingerprint": print_}
-
-    def is_done(self, print_):
-        if not os.path.exists(self.path("run.json")):
-            return False
-        made = self.json("run.json")
-        return all(made.get(key) == value for key, value in self.identity(print_).items())
-
-    def execute(self, print_):
-        shutil.rmtree(self.folder, ignore_errors=True)
-        os.makedirs(self.folder)
-        with open(self.path("log.txt"), "w", encoding="utf-8") as log:
-            for command, output in self.commands:
-                self.call(command, output, log)
-        for name in self.remove:
-            path = self.path(name)
-            if os.path.isdir(path):
-                shutil.rmtree(path)
-            elif os.path.exists(path):
-                os.remove(path)
-        with open(self.path("run.json"), "w", encoding="utf-8") as file:
-            json.dump({**self.identity(print_), "commit": commit()}, file, indent=1)
-
-    def call(self, command, output, log):
-        if output:
-            with open(self.path(output), "w", encoding="utf-8") as stdout:
-                code = subprocess.run(command, stdout=stdout, stderr=log, check=False).returncode
-        else:
-            code = subprocess.run(command, stdout=log, stderr=log, check=False).returncode
-        if code != 0:
-            raise RuntimeError(f"{shlex.join(command)}: exit code {code}; see {self.path('log.txt')}")
-
-
-def execute(runs, opts, jobs=None):
-    """Does the runs that are not done yet, some at a time."""
-    todo = [run for run in runs if not run.is_done(opts.fingerprint)]
-    if runs and not todo:
-        print(f"{len(runs)} runs, all done before", file=sys.stderr)
-    with concurrent.futures.ThreadPoolExecutor(jobs or opts.jobs) as pool:
-        pending = {pool.submit(run.execute, opts.fingerprint): run for run in todo}
-        try:
-            for count, future in enumerate(concurrent.futures.as_completed(pending), 1):
-                future.result()
-                print(f"{count}/{len(todo)} {pending[future].folder}", file=sys.stderr)
-        except (RuntimeError, KeyboardInterrupt):
-            pool.shutdown(cancel_futures=True)
-            raise
-
+# --- the runs of the scenes ---------------------------------------------------------------------------
 
 def program(opts, name):
     return os.path.join(opts.bin, name)
@@ -195,6 +119,13 @@ def mapping(opts, scene, seed, name="default", settings=()):
                remove=BULKY)
 
 
+def sequence_inputs(opts):
+    if not opts.sequence:
+        return []
+    prefix = os.path.splitext(opts.sequence)[0]
+    return [opts.sequence, f"{prefix}_instances.rawlog", f"{prefix}_groundtruth.tum"]
+
+
 def sequence_mapping(opts, name="default", settings=()):
     """The same of the real sequence, whose objects nobody has labelled; None without one."""
     if not opts.sequence:
@@ -208,7 +139,7 @@ def sequence_mapping(opts, name="default", settings=()):
     if opts.quick:
         slam += ["--max-frames", str(QUICK_FRAMES)]
     return Run(folder, [slam, *trajectory_commands(opts, folder, f"{prefix}_groundtruth.tum")],
-               remove=BULKY)
+               remove=BULKY, inputs=sequence_inputs(opts))
 
 
 def mappings(opts, scenes):
@@ -253,9 +184,9 @@ def processor():
     return f"{names[0] if names else 'unknown processor'}, {os.cpu_count()} cores"
 
 
-def footer(opts, runs):
+def footer(opts, made):
     """Command, seeds, commit and machine; every commit that a run was made with, should they differ."""
-    commits = sorted({run.json("run.json")["commit"] for run in runs})
+    commits = sorted({run.json("run.json")["commit"] for run in made})
     command = ["make", "experiments", f"SEEDS={','.join(map(str, opts.seeds))}"]
     if opts.quick:
         command.append("QUICK=1")
@@ -264,7 +195,7 @@ def footer(opts, runs):
     lines = ["---", "", table(["", ""], [
         ["command", f"`{' '.join(command)}` (`scripts/experiments/{os.path.basename(sys.argv[0])}`)"],
         ["seeds", ", ".join(map(str, opts.seeds))],
-        ["commit", ", ".join(commits)],
+        ["commit", ", ".join(commits) or "-"],
         ["machine", f"{processor()}; {opts.jobs} runs at a time"]])]
     if opts.quick:
         lines += ["", f"A trial of the scripts with {QUICK_FRAMES} frames a run: no result."]
@@ -285,7 +216,10 @@ COLORS = ["#0072b2", "#d55e00", "#009e73", "#cc79a7", "#e69f00", "#56b4e9"]  # t
 
 def pyplot():
     """Matplotlib, so that the same numbers give the same SVG."""
-    import matplotlib
+    try:
+        import matplotlib
+    except ImportError as error:
+        raise RuntimeError(f"{error}; install python3-matplotlib") from error
     matplotlib.use("svg")
     matplotlib.rcParams.update({
         "svg.hashsalt": "semloop", "svg.fonttype": "none", "font.size": 9, "axes.spines.top": False,

@@ -3,6 +3,7 @@
 for simulated runs and with the paper's rule of half the edges."""
 
 import common
+from runs import call_main, execute
 
 SCENES = ["apartment", "office", "corridor", "no_loop"]
 RULES = [("default", "default", []),
@@ -36,7 +37,7 @@ def main():
     real = [(title, run) for title, name, settings in RULES
             if (run := common.sequence_mapping(opts, name, settings))]
     runs = [run for group in groups.values() for run in group] + [run for _, run in real]
-    common.execute(runs, opts)
+    execute(runs, opts)
     for (scene, title), group in groups.items():
         for seed, run in zip(opts.seeds, group):
             rows.append([scene, seed, title, *counts(run)])
@@ -56,9 +57,12 @@ def main():
         "corridor of identical rooms and `no_loop` are walked through once, nothing is seen again: "
         "the right number of loops is zero.",
         f"`semloop-eval loops --frames-apart {common.FRAMES_APART} --minimum-pixels "
-        f"{common.MINIMUM_PIXELS}` judges, by the paper's rule; smaller objects cannot come into the map. *Detections* are what the graph matcher finds, *verified* what is "
-        "left after the geometric verification and the alignment of the surfaces. A real sequence "
-        "has no true objects, so its detections are only counted.",
+        f"{common.MINIMUM_PIXELS}` judges; smaller objects cannot come into the map. Its rule is the "
+        "paper's, more than two objects in common with a frame more than "
+        f"{common.FRAMES_APART} frames before, with the local map for the later frame, and stricter: "
+        "more than half of the matched pairs must be one real object. *Detections* are what the graph "
+        "matcher finds, *verified* what is left after the geometric verification and the alignment of "
+        "the surfaces. A real sequence has no true objects, so its detections are only counted.",
         "## All scenes and seeds", common.table(["rule", *columns], totals),
         "## Each run",
         common.table(["scene", "seed", "rule", *columns, "revisited places found"], rows),
@@ -66,4 +70,4 @@ def main():
 
 
 if __name__ == "__main__":
-    main()
+    call_main(main)

@@ -3,7 +3,8 @@
 of objects and the sparsity of S in random maps. One program at a time, so that nothing disturbs it."""
 
 import common
-from common import Run, program
+from common import program
+from runs import Run, call_main, execute
 
 SCENES = ["apartment", "office", "corridor", "no_loop"]
 REPETITIONS = 5
@@ -85,9 +86,9 @@ def main():
     opts = common.options(__doc__)
     groups = common.mappings(opts, SCENES)
     maps = [run for group in groups.values() for run in group]
-    common.execute(maps, opts)
+    execute(maps, opts)
     timing = benchmark(opts, maps)
-    common.execute([timing], opts, jobs=1)
+    execute([timing], opts, jobs=1)
     cases = medians(timing)
     points = sorted(whole_maps(cases))
     plot(opts, points)
@@ -115,4 +116,4 @@ def main():
 
 
 if __name__ == "__main__":
-    main()
+    call_main(main)

@@ -1,6 +1,7 @@
 #!/usr/bin/env bash
-# make experiments: the paper's experiments on simulated scenes; writes tables and plots to doc/results.
-# Run again, it does only what is missing or was made with other programs.
+# make experiments: the paper's experiments on simulated scenes; writes tables and plots to doc/results and
+# fails when the results do not hold what bounds.py asks for. Run again, it does only what is missing or
+# was made with other programs.
 #
 #   SEEDS      of the simulation (1,2,3,4,5; 1,2,3 for the association)
 #   JOBS       runs at a time
@@ -18,7 +19,7 @@ options=(--bin "$BIN" --out "$OUT" --jobs "$JOBS")
 [ -z "$QUICK" ] || [ "$QUICK" = 0 ] || options+=(--quick)
 
 if [ -n "$TUM" ]; then
-  [ -n "$MODEL" ] || { echo "make experiments TUM=<folder> needs MODEL=<net.onnx>, too" >&2; exit 1; }
+  [ -n "$MODEL" ] || { echo "make experiments TUM=<folder> needs MODEL=<net.onnx>, too" >&2; exit 2; }
   rawlog=$OUT/$(basename "$TUM").rawlog
   mkdir -p "$OUT"
   [ -f "$rawlog" ] || "$BIN/tum2rawlog" "$TUM" "$rawlog"
@@ -28,7 +29,7 @@ if [ -n "$TUM" ]; then
   options+=(--sequence "$rawlog")
 fi
 
-for experiment in loops trajectory matching_time association; do
+for experiment in loops trajectory matching_time association bounds; do
   echo "== $experiment"
   "$here/$experiment.py" "${options[@]}"
 done

@@ -2,6 +2,7 @@
 """Table II: error of the trajectory, of the odometry alone and after semantic loop closure."""
 
 import common
+from runs import call_main, execute
 
 SCENES = ["apartment", "office", "corridor", "no_loop"]
 FILES = [("odometry", "odometry.json"), ("with loop closure", "trajectory.json")]
@@ -19,7 +20,7 @@ def plot(opts, groups):
     figure, axis = common.pyplot().subplots(figsize=(6, 3))
     for i, (title, name) in enumerate(FILES):
         points = [(k + 0.24 * (i - 0.5), error) for k, group in enumerate(groups.values())
-                  for error in errors(group, name)]
+                  for error in common.present(errors(group, name))]
         axis.plot(*zip(*points), "o", ms=5, alpha=0.75, mew=0, label=title)
     axis.set_xticks(range(len(groups)), groups.keys())
     axis.set(ylabel="trajectory error, RMSE [m]", ylim=(0, None))
@@ -32,11 +33,11 @@ def main():
     opts = common.options(__doc__)
     groups = common.mappings(opts, SCENES)
     runs = [run for group in groups.values() for run in group]
-    common.execute(runs, opts)
+    execute(runs, opts)
     plot(opts, groups)
     rows = [[scene, *(common.spread(errors(group, name)) for _, name in FILES),
              common.spread(loops(group), 0)] for scene, group in groups.items()]
-    each = [[scene, seed, *(f"{errors([run], name)[0]:.3f}" for _, name in FILES), loops([run])[0]]
+    each = [[scene, seed, *(common.spread(errors([run], name)) for _, name in FILES), loops([run])[0]]
             for scene in SCENES for seed, run in zip(opts.seeds, groups[scene])]
     common.write(
         opts, "trajectory.md", "# Trajectories (Sec. IV-D, Table II)",
@@ -50,4 +51,4 @@ def main():
 
 
 if __name__ == "__main__":
-    main()
+    call_main(main)
