@@ -15,6 +15,16 @@ std::string firstLine(const std::string& text)
 	return text.substr(0, text.find('\n'));
 }
 
+/** MRPT's exceptions have a banner, "Message: ..." and a call stack. */
+std::string messageOf(const std::exception& e)
+{
+	const std::string text = e.what(), mark = "Message:";
+	const auto message = text.find(mark);
+	if (message == std::string::npos) return firstLine(text);
+	const auto begin = text.find_first_not_of(' ', message + mark.size());
+	return begin == std::string::npos ? firstLine(text) : firstLine(text.substr(begin));
+}
+
 /** TCLAP prints a wrong call over many lines and goes on: we want one line, and out. */
 class ThrowingOutput : public TCLAP::StdOutput
 {
@@ -22,8 +32,8 @@ public:
 	void failure(TCLAP::CmdLineInterface& commandLine, TCLAP::ArgException& e) override
 	{
 		// Without a culprit TCLAP names " " or "undefined".
-		const bool named = e.argId().find_first_not_of(' ') != std::string::npos &&
-						   e.argId() != "undefined";
+		const bool named =
+			e.argId().find_first_not_of(' ') != std::string::npos && e.argId() != "undefined";
 		const std::string where = named ? e.argId() + ": " : "";
 		throw UsageError(where + e.error() + "; see " + commandLine.getProgramName() + " --help");
 	}
@@ -48,8 +58,7 @@ int runApplication(const std::string& name, const std::function<int()>& body)
 	}
 	catch (const std::exception& e)
 	{
-		// MRPT's exceptions carry a call stack behind the first line.
-		std::cerr << name << ": " << firstLine(e.what()) << "\n";
+		std::cerr << name << ": " << messageOf(e) << "\n";
 		return kFailed;
 	}
 }

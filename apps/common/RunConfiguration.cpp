@@ -4,6 +4,15 @@
 
 namespace semloop
 {
+RunConfiguration::RunConfiguration(const std::string& path)
+try : CConfigFile(path)
+{
+}
+catch (const std::exception&)
+{
+	throw InputError(path + ": cannot be read as a configuration; give an ini file");
+}
+
 RunConfiguration::~RunConfiguration()
 {
 	// MRPT would save the overrides otherwise.

@@ -11,7 +11,8 @@ namespace semloop
 class RunConfiguration : public mrpt::config::CConfigFile
 {
 public:
-	explicit RunConfiguration(const std::string& path) : CConfigFile(path) {}
+	/** Throws InputError when the file is not one of sections and keys. */
+	explicit RunConfiguration(const std::string& path);
 	~RunConfiguration() override;
 
 	/** Each "section.key=value"; throws UsageError on anything else. */

@@ -79,16 +79,6 @@ ObjectsResult evaluate(const ObjectsArguments& arguments)
 	return result;
 }
 
-nlohmann::ordered_json toJson(const ErrorSummary& s)
-{
-	return {
-		{"count", s.count},
-		{"rmse", s.rmse},
-		{"mean", s.mean},
-		{"median", s.median},
-		{"max", s.max}};
-}
-
 nlohmann::ordered_json toJson(const SurfaceReport& surface)
 {
 	auto json = nlohmann::ordered_json::object();

@@ -44,6 +44,18 @@ nlohmann::ordered_json numberOrNull(const std::optional<double>& value)
 	return *value;
 }
 
+nlohmann::ordered_json toJson(const ErrorSummary& errors, double scale)
+{
+	nlohmann::ordered_json json{{"count", errors.count}};
+	const auto tell = [&](const char* name, double value)
+	{ json[name] = errors.count > 0 ? nlohmann::ordered_json(value * scale) : nullptr; };
+	tell("rmse", errors.rmse);
+	tell("mean", errors.mean);
+	tell("median", errors.median);
+	tell("max", errors.max);
+	return json;
+}
+
 std::string toText(const std::optional<double>& value)
 {
 	if (!value) return "-";

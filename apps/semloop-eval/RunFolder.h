@@ -1,5 +1,6 @@
 #pragma once
 
+#include <semloop/evaluation/TrajectoryError.h>
 #include <semloop/evaluation/TrueFrames.h>
 
 #include <nlohmann/json.hpp>
@@ -19,6 +20,9 @@ std::vector<RunFrame> runWithTruth(
 
 /** A number, or null. */
 nlohmann::ordered_json numberOrNull(const std::optional<double>& value);
+
+/** Count, rmse, mean, median and max times `scale`; null where there is nothing to tell. */
+nlohmann::ordered_json toJson(const ErrorSummary& errors, double scale = 1);
 
 /** Four decimals, or "-". */
 std::string toText(const std::optional<double>& value);

@@ -5,11 +5,11 @@
 
 #include <cstdio>
 #include <iostream>
-#include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
 
 #include "Application.h"
+#include "RunFolder.h"
 
 namespace semloop
 {
@@ -63,16 +63,6 @@ Evaluation evaluate(const TrajectoryArguments& arguments)
 		throw InputError(arguments.estimate + " with " + arguments.truth + ": " + e.what());
 	}
 	return result;
-}
-
-nlohmann::ordered_json toJson(const ErrorSummary& s, double scale = 1.0)
-{
-	return {
-		{"count", s.count},
-		{"rmse", s.rmse * scale},
-		{"mean", s.mean * scale},
-		{"median", s.median * scale},
-		{"max", s.max * scale}};
 }
 
 nlohmann::ordered_json toJson(const RelativePoseError& error)

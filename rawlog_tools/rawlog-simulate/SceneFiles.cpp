@@ -6,6 +6,8 @@
 
 #include <filesystem>
 #include <fstream>
+#include <regex>
+#include <vector>
 
 namespace fs = std::filesystem;
 
@@ -13,7 +15,10 @@ namespace semloop
 {
 namespace
 {
-mrpt::math::TPoint3D toPoint(const Eigen::Vector3f& p) { return {p.x(), p.y(), p.z()}; }
+mrpt::math::TPoint3D toPoint(const Eigen::Vector3f& p)
+{
+	return {p.x(), p.y(), p.z()};
+}
 
 GraphVertex vertexOf(const SceneObject& object, const LabelSet& labels, int observations)
 {
@@ -22,8 +27,8 @@ GraphVertex vertexOf(const SceneObject& object, const LabelSet& labels, int obse
 	GraphVertex vertex;
 	vertex.id = object.id;
 	vertex.label = labels.name(object.label);
-	vertex.position = object.T_world_object.composePoint(
-		toPoint((bounds.minimum + bounds.maximum) / 2.0F));
+	vertex.position =
+		object.T_world_object.composePoint(toPoint((bounds.minimum + bounds.maximum) / 2.0F));
 	vertex.extent = mrpt::math::TVector3D(size.x(), size.y(), size.z());
 	mrpt::math::CQuaternionDouble orientation;
 	object.T_world_object.getAsQuaternion(orientation);
@@ -52,6 +57,17 @@ TriangleMesh surfaceOf(const SceneObject& object)
 	}
 	return surface;
 }
+
+/** Of a run before this one; what else is in the folder stays. */
+void removeMeshes(const fs::path& folder)
+{
+	const std::regex name("[0-9]+_.*\\.ply");
+	std::vector<fs::path> meshes;
+	for (const auto& entry : fs::directory_iterator(folder))
+		if (std::regex_match(entry.path().filename().string(), name))
+			meshes.push_back(entry.path());
+	for (const auto& mesh : meshes) fs::remove(mesh);
+}
 }  // namespace
 
 void writeTrueObjects(
@@ -59,8 +75,8 @@ void writeTrueObjects(
 {
 	SemanticGraph graph;
 	const fs::path folder = prefix + "_objects";
-	fs::remove_all(folder);
 	fs::create_directories(folder);
+	removeMeshes(folder);
 	for (const auto& object : scene.objects)
 	{
 		const auto seen = observations.find(object.id);
@@ -73,8 +89,7 @@ void writeTrueObjects(
 	graph.save(prefix + "_objects.json");
 }
 
-void writeAttribution(
-	const std::string& path, const Scene& scene, const FurnitureCatalog& catalog)
+void writeAttribution(const std::string& path, const Scene& scene, const FurnitureCatalog& catalog)
 {
 	std::map<std::string, const CatalogEntry*> used;
 	for (const auto& object : scene.objects)

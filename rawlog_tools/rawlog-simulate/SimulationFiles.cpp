@@ -28,6 +28,15 @@ Trajectory firstOf(Trajectory trajectory, std::size_t count)
 	trajectory.resize(std::min(count, trajectory.size()));
 	return trajectory;
 }
+
+std::string colorName(std::size_t frame)
+{
+	return mrpt::format("color_%06zu.jpg", frame);
+}
+std::string depthName(std::size_t frame)
+{
+	return mrpt::format("depth_%06zu.bin", frame);
+}
 }  // namespace
 
 SimulationFiles::SimulationFiles(const std::string& rawlog, bool embed, bool color)
@@ -46,7 +55,7 @@ SimulationFiles::SimulationFiles(const std::string& rawlog, bool embed, bool col
 
 void SimulationFiles::storeColor(mrpt::obs::CObservation3DRangeScan& scan)
 {
-	const std::string name = mrpt::format("color_%06zu.jpg", frames_);
+	const std::string name = colorName(frames_);
 	const std::string path = (fs::path(imagesFolder_) / name).string();
 	// Without colour all images are the same.
 	if (color_ || jpeg_.empty())
@@ -64,7 +73,7 @@ void SimulationFiles::write(SimulatedFrame& frame)
 	if (!imagesFolder_.empty())
 	{
 		storeColor(frame.scan);
-		storeDepthExternally(frame.scan, imagesFolder_, mrpt::format("depth_%06zu.bin", frames_));
+		storeDepthExternally(frame.scan, imagesFolder_, depthName(frames_));
 	}
 	rawlog_.write(frame.acceleration);
 	rawlog_.write(frame.scan);
@@ -75,8 +84,20 @@ void SimulationFiles::write(SimulatedFrame& frame)
 	++frames_;
 }
 
+void SimulationFiles::removeImagesOfALongerRun() const
+{
+	if (imagesFolder_.empty()) return;
+	const fs::path folder = imagesFolder_;
+	for (std::size_t i = frames_; fs::exists(folder / depthName(i)); ++i)
+	{
+		fs::remove(folder / depthName(i));
+		fs::remove(folder / colorName(i));
+	}
+}
+
 void SimulationFiles::close(const Simulator& simulator, const FurnitureCatalog& catalog)
 {
+	removeImagesOfALongerRun();
 	rawlog_.close();
 	trueInstances_.close();
 	instances_.close();

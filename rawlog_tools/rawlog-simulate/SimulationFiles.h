@@ -26,6 +26,7 @@ public:
 
 private:
 	void storeColor(mrpt::obs::CObservation3DRangeScan& scan);
+	void removeImagesOfALongerRun() const;
 
 	std::string prefix_;
 	std::string imagesFolder_;  //!< empty: images in the rawlog

@@ -31,7 +31,10 @@ uint64_t keyOf(uint64_t seed, Stream stream, std::size_t frame)
 }
 
 /** A fixed date, so that the same seed gives the same bytes: 2020-01-01. */
-mrpt::Clock::time_point startTime() { return mrpt::Clock::fromDouble(1577836800.0); }
+mrpt::Clock::time_point startTime()
+{
+	return mrpt::Clock::fromDouble(1577836800.0);
+}
 
 const std::vector<std::string>& sensorSections()
 {
@@ -72,12 +75,13 @@ Simulator::Simulator(
 	renderer_ = std::make_unique<SceneRenderer>(built_.scene);
 	try
 	{
-		// Sensors refuse options that do not fit together at the first frame: better before any file.
+		// Whether the labels of its confusions exist the detector sees at a frame: better before any
+		// file.
 		frame(0, false);
 	}
 	catch (const UsageError& error)
 	{
-		throw UsageError(description_.file + ": " + error.what());
+		throw UsageError(description_.file + ": [detector] " + error.what());
 	}
 }
 
@@ -102,9 +106,9 @@ mrpt::obs::CObservation3DRangeScan Simulator::scanOf(const RenderedView& view, s
 		std::copy_n(depth.ptr<uint16_t>(row), depth.cols, &scan.rangeImage(row, 0));
 	scan.hasIntensityImage = true;
 	const double time = mrpt::system::timeDifference(startTime(), scan.timestamp);
-	const cv::Mat color = view.color.empty()
-							  ? cv::Mat(depth.size(), CV_8UC3, cv::Scalar::all(0))
-							  : senseColor(view, sensors_.color, time, keyOf(seed_, kColorStream, i));
+	const cv::Mat color =
+		view.color.empty() ? cv::Mat(depth.size(), CV_8UC3, cv::Scalar::all(0))
+						   : senseColor(view, sensors_.color, time, keyOf(seed_, kColorStream, i));
 	scan.intensityImage = mrpt::img::CImage(color, mrpt::img::DEEP_COPY);
 	return scan;
 }
@@ -117,8 +121,8 @@ SimulatedFrame Simulator::frame(std::size_t i, bool color) const
 	result.acceleration = accelerationAt(trajectory_[i]);
 	result.scan = scanOf(view, i);
 	result.trueInstances = trueInstances(view, built_.scene, sensors_.detector, key);
-	result.instances = detectInstances(
-		view, renderer_->hiddenShares(view), built_.scene, sensors_.detector, key);
+	result.instances =
+		detectInstances(view, renderer_->hiddenShares(view), built_.scene, sensors_.detector, key);
 	for (auto* instances : {&result.trueInstances, &result.instances})
 	{
 		instances->timestamp = trajectory_[i].time;

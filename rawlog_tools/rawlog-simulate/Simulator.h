@@ -28,6 +28,9 @@ struct SimulatedFrame
 class Simulator
 {
 public:
+	/** Beyond, two seeds would share random numbers. */
+	static constexpr int64_t kMostSeed = (1 << 29) - 1;
+
 	/** Throws UsageError or InputError, naming the scene's file. */
 	Simulator(
 		const mrpt::config::CConfigFileBase& config, const FurnitureCatalog& catalog,

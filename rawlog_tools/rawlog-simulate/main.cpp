@@ -5,6 +5,7 @@
 #include <cstdio>
 #include <deque>
 #include <future>
+#include <limits>
 #include <thread>
 
 #include "Application.h"
@@ -31,6 +32,19 @@ struct Arguments
 	std::string furniture = FurnitureCatalog::kDefaultFolder;
 };
 
+constexpr int64_t kMost = std::numeric_limits<int64_t>::max();
+
+int64_t within(TCLAP::ValueArg<int64_t>& argument, int64_t least, int64_t most)
+{
+	const int64_t value = argument.getValue();
+	if (value >= least && value <= most) return value;
+	const std::string limits = most == kMost
+								   ? "at least " + std::to_string(least)
+								   : std::to_string(least) + " to " + std::to_string(most);
+	throw UsageError(
+		"--" + argument.getName() + " " + std::to_string(value) + ": not allowed; use " + limits);
+}
+
 /** False when --help or --version has been answered. */
 bool parse(int argc, char** argv, Arguments& out)
 {
@@ -38,6 +52,7 @@ bool parse(int argc, char** argv, Arguments& out)
 		"Renders a furnished room as an RGB-D camera would see it, with the truth.", ' ',
 		SEMLOOP_VERSION);
 	using Text = TCLAP::ValueArg<std::string>;
+	using Number = TCLAP::ValueArg<int64_t>;  // unsigned ones would take -1 for a large one
 	TCLAP::UnlabeledValueArg<std::string> scene(
 		"scene", "Scene to simulate, e.g. config_ini/scenes/apartment.ini.", true, "", "SCENE.ini",
 		line);
@@ -47,7 +62,7 @@ bool parse(int argc, char** argv, Arguments& out)
 	Text furniture(
 		"", "furniture", "Folder of Sweet Home 3D's catalogues.", false, out.furniture, "DIR",
 		line);
-	TCLAP::ValueArg<unsigned> threads(
+	Number threads(
 		"", "threads", "Threads; the result does not depend on them. All cores unless given.",
 		false, std::max(1U, std::thread::hardware_concurrency()), "N", line);
 	TCLAP::SwitchArg embed("", "embed", "Images inside the rawlog.", line);
@@ -55,22 +70,21 @@ bool parse(int argc, char** argv, Arguments& out)
 	TCLAP::MultiArg<std::string> set(
 		"s", "set", "Overrides one key of the scene.", false, "section.key=value", line);
 	Text size("", "size", "Size of the images instead of the scene's.", false, "", "WxH", line);
-	TCLAP::ValueArg<std::size_t> frames(
-		"", "frames", "Only the first N frames.", false, 0, "N", line);
-	TCLAP::ValueArg<uint64_t> seed(
+	Number frames("", "frames", "Only the first N frames.", false, 0, "N", line);
+	Number seed(
 		"", "seed", "Chooses furniture, places and noise; 1 unless given.", false, 1, "N", line);
 	if (!parseArguments(line, argc, argv)) return false;
 
 	out.scene = scene.getValue();
 	out.rawlog = rawlog.getValue();
 	out.furniture = furniture.getValue();
-	out.threads = std::max(1U, threads.getValue());
+	out.threads = unsigned(within(threads, 1, 256));
 	out.embed = embed.getValue();
 	out.color = !noColor.getValue();
 	out.overrides = set.getValue();
 	out.size = size.getValue();
-	out.frames = frames.getValue();
-	out.seed = seed.getValue();
+	out.frames = std::size_t(frames.isSet() ? within(frames, 1, kMost) : 0);
+	out.seed = uint64_t(within(seed, 0, Simulator::kMostSeed));
 	return true;
 }
 

@@ -109,8 +109,7 @@ TEST_F(RawlogSimulate, TheObjectsAreWrittenWithHowOftenTheyAreSeen)
 		for (const auto& instance : observation->instances)
 		{
 			const auto id = instance.trueObject.value();
-			EXPECT_EQ(
-				graph.vertices.at(id - 1).label, observation->labels.name(instance.label()));
+			EXPECT_EQ(graph.vertices.at(id - 1).label, observation->labels.name(instance.label()));
 		}
 	int all = 0;
 	for (const auto& vertex : graph.vertices)
@@ -198,6 +197,11 @@ TEST_F(RawlogSimulate, WrongScenesAreNamedWithTheirPlace)
 		{"[room.den] furniture: 'desk'", "no place"});
 	expectFailureOf("1.3 0.6", "4.5 0.6", 1, {"den.ini: [path]", "wall", "0.60)"});
 	expectFailureOf("desk + book", "desk + boook", 2, {"[room.den] furniture", "'boook'"});
+	expectFailureOf(
+		"primitive:book", "primitive:boook", 1,
+		{folder_.file("models.ini") + ": [book] models: no primitive 'boook'", "keyboard"});
+	scene_ = "/bin/ls";
+	expectFailure(run(), 1, {"/bin/ls: cannot be read", "ini file"});
 	EXPECT_TRUE(filesOf("x").empty());
 }
 
@@ -210,7 +214,17 @@ TEST_F(RawlogSimulate, WrongUsageExitsWith2)
 	expectFailure(run("--frames x"), 2, {});
 	expectFailure(run("--set nonsense"), 2, {"--set nonsense"});
 	expectFailure(run("--set camera.wdth=3"), 2, {"[camera] wdth"});
-	expectFailure(run("--set depth_sensor.minimum_range=7"), 2, {"minimum_range"});
+	for (const std::string option :
+		 {"--frames -1", "--frames 0", "--seed -1", "--seed 536870912", "--threads -1",
+		  "--threads 0", "--threads 257"})
+		expectFailure(run(option), 2, {option, "use "});
+	const std::string at = "den.ini: [";
+	for (const auto& [set, section] : std::vector<std::pair<std::string, std::string>>{
+			 {"minimum_range=7", "depth_sensor"},
+			 {"embedding_size=5", "detector"},
+			 {"embedding_class=0.9", "detector"},
+			 {"confusions=desk", "detector"}})
+		expectFailure(run("--set " + section + "." + set), 2, {at + section + "]"});
 	EXPECT_TRUE(filesOf("x").empty());
 }
 
@@ -219,6 +233,21 @@ TEST_F(RawlogSimulate, AnUnwritablePlaceIsTold)
 	expectFailure(
 		runWith("'" + scene_ + "' /nonexistent/x.rawlog"), 1,
 		{"/nonexistent/x", "cannot be written"});
+	std::filesystem::create_directory(folder_.file("folder.rawlog"));
+	expectFailure(run("", "folder.rawlog"), 1, {"folder.rawlog", "give one"});
+	expectFailure(runWith("'" + scene_ + "' ''"), 1, {"give one"});
+}
+
+TEST_F(RawlogSimulate, AShorterRunReplacesALongerOneAndNothingElse)
+{
+	ASSERT_EQ(run(), 0) << err_;
+	std::filesystem::create_directories(folder_.file("x_objects"));
+	folder_.write("x_objects/mine.txt", "mine");
+	folder_.write("x_objects/9_chair.ply", "of another scene");
+	ASSERT_EQ(run("--frames 3"), 0) << err_;
+	EXPECT_EQ(filesOf("x_Images/").size(), 6u);
+	EXPECT_EQ(filesOf("x_objects/").count("mine.txt"), 1u);
+	EXPECT_EQ(filesOf("x_objects/").size(), 4u);
 }
 
 TEST_F(RawlogSimulate, CtrlCFinishesTheFilesOfWhatIsDone)

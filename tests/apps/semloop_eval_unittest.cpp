@@ -39,6 +39,19 @@ TEST_F(SemloopEval, PrintsATableWhoseNumbersAreThoseOfTheJson)
 	EXPECT_EQ(result.errors, "");
 }
 
+TEST_F(SemloopEval, WhatWasNotMeasuredIsNullInTheJson)
+{
+	const std::string standing = "100 0 0 0 0 0 0 1\n101 0 0 0 0 0 0 1\n102 0 0 0 0 0 0 1\n";
+	const auto result = run(
+		"trajectory " + write("est.tum", standing) + " " + write("truth.tum", standing) +
+		" --align none --json");
+	ASSERT_EQ(result.exitCode, 0) << result.errors;
+	const auto perMetre = nlohmann::json::parse(result.output)["rpe_per_metre"]["translation_m"];
+	EXPECT_EQ(perMetre["count"], 0);
+	for (const std::string name : {"rmse", "mean", "median", "max"})
+		EXPECT_TRUE(perMetre.at(name).is_null()) << name;
+}
+
 TEST_F(SemloopEval, NamesAMissingFileAndExitsWith1)
 {
 	const auto result =

@@ -190,6 +190,14 @@ void Options::loadFromConfigFile(
 		if (!assign(*field, text))
 			throw UsageError(place + " = " + text + ": not allowed; use " + allowed(*field));
 	}
+	try
+	{
+		requireConsistent();
+	}
+	catch (const UsageError& error)
+	{
+		throw UsageError(configFileName(source) + ": [" + section + "] " + error.what());
+	}
 }
 
 void Options::saveToConfigFile(

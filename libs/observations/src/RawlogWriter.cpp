@@ -9,6 +9,17 @@
 
 namespace semloop
 {
+namespace
+{
+const std::string& requireFileName(const std::string& path)
+{
+	if (path.empty() || std::filesystem::is_directory(path))
+		throw InputError(
+			"'" + path + "': not the name of a rawlog to write; give one, e.g. out.rawlog");
+	return path;
+}
+}  // namespace
+
 struct RawlogWriter::Stream
 {
 	explicit Stream(const std::string& path) : file(path) {}
@@ -17,7 +28,7 @@ struct RawlogWriter::Stream
 };
 
 RawlogWriter::RawlogWriter(const std::string& path)
-	: path_(path), stream_(std::make_unique<Stream>(partialPath(path)))
+	: path_(requireFileName(path)), stream_(std::make_unique<Stream>(partialPath(path)))
 {
 }
 

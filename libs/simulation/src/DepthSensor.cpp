@@ -185,12 +185,17 @@ void DepthSensorOptions::describe(OptionFields& f)
 	f.number("minimum_cosine", minimumCosine, 0, 1, "of the angle of incidence; less: no depth");
 }
 
+void DepthSensorOptions::requireConsistent() const
+{
+	if (minimumRange > maximumRange)
+		throw UsageError(
+			"minimum_range = " + std::to_string(minimumRange) + ": not allowed; use at most " +
+			"maximum_range, " + std::to_string(maximumRange));
+}
+
 cv::Mat senseDepth(const RenderedView& view, const DepthSensorOptions& o, uint64_t seed)
 {
-	if (o.minimumRange > o.maximumRange)
-		throw UsageError(
-			"minimum_range = " + std::to_string(o.minimumRange) + ": not allowed; use at most " +
-			"maximum_range, " + std::to_string(o.maximumRange));
+	o.requireConsistent();
 	if (view.depth.empty()) return {};
 	requireView(view);
 	if (!o.noise) return exactDepth(view.depth, o);

@@ -132,8 +132,18 @@ Mesh makePrimitive(const std::string& kind, uint64_t seed)
 			SeededRandom random(seed);
 			return known.make(random);
 		}
+	requirePrimitive(kind);
+	return {};
+}
+
+void requirePrimitive(const std::string& kind)
+{
 	std::string message = "no primitive '" + kind + "'; there are:";
-	for (const std::string& name : primitiveKinds()) message += " " + name;
+	for (const std::string& name : primitiveKinds())
+	{
+		if (name == kind) return;
+		message += " " + name;
+	}
 	throw InputError(message);
 }
 

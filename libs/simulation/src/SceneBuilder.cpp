@@ -51,23 +51,19 @@ std::vector<PointLight> lamps(const SceneDescription& description, const FloorPl
 void requireModels(const SceneDescription& description, const FurnitureCatalog& catalog)
 {
 	const std::string primitive = "primitive:";
-	const auto kinds = primitiveKinds();
 	for (const auto& [name, item] : description.items)
-		for (const auto& id : item.models)
-		{
-			const std::string place = description.scene.models + ": [" + name + "] models: ";
-			if (id.rfind(primitive, 0) != 0) try
-				{
+		for (const auto& id : item.models) try
+			{
+				if (id.rfind(primitive, 0) == 0)
+					requirePrimitive(id.substr(primitive.size()));
+				else
 					catalog.entry(id);
-				}
-				catch (const InputError& error)
-				{
-					throw InputError(place + error.what());
-				}
-			else if (
-				std::find(kinds.begin(), kinds.end(), id.substr(primitive.size())) == kinds.end())
-				throw InputError(place + "no " + id);
-		}
+			}
+			catch (const InputError& error)
+			{
+				throw InputError(
+					description.modelsFile + ": [" + name + "] models: " + error.what());
+			}
 }
 
 /** The way, of which a carrier with his camera has room. */

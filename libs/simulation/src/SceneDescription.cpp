@@ -140,8 +140,8 @@ SceneDescription SceneDescription::load(
 	result.scene.loadFromConfigFile(config, "scene");
 	result.path.loadFromConfigFile(config, "path");
 	result.camera.loadFromConfigFile(config, "camera");
-	result.items =
-		loadItems((std::filesystem::path(file).parent_path() / result.scene.models).string());
+	result.modelsFile = (std::filesystem::path(file).parent_path() / result.scene.models).string();
+	result.items = loadItems(result.modelsFile);
 	return result;
 }
 
@@ -200,7 +200,7 @@ FurnitureGroup SceneDescription::group(const std::string& room, const std::strin
 		if (items.count(name) == 0)
 			throw UsageError(
 				file + ": [" + kRoomPrefix + room + "] furniture = " + text + ": '" + name +
-				"' is no section of " + scene.models);
+				"' is no section of " + modelsFile);
 		if (kind == 0)
 			group.base = name;
 		else

@@ -100,6 +100,19 @@ Instance falseInstance(
 }
 }  // namespace
 
+void SimulatedDetectorOptions::requireConsistent() const
+{
+	if (embeddingSize > 0 && embeddingSize < 8)
+		throw UsageError(
+			"embedding_size = " + std::to_string(embeddingSize) +
+			": not allowed; use 0 for none or at least 8");
+	const double shares = embeddingClass + embeddingView + embeddingNoise;
+	if (shares > 1 + 1e-9)
+		throw UsageError(
+			"embedding_class + embedding_view + embedding_noise = " + std::to_string(shares) +
+			": not allowed; use shares that sum to at most 1");
+}
+
 void SimulatedDetectorOptions::describe(OptionFields& f)
 {
 	f.integer("minimum_area", minimumArea, 0, 1 << 24, "smaller are not reported [px of 640]");

@@ -50,19 +50,9 @@ ViewVector viewVector(const SceneObject& object, const mrpt::poses::CPose3D& T_w
 	return v / std::sqrt(1.25);
 }
 
-/** Throws UsageError for options that make no embedding. */
 double identityShare(const SimulatedDetectorOptions& o)
 {
-	if (o.embeddingSize > 0 && o.embeddingSize < 8)
-		throw UsageError(
-			"embedding_size = " + std::to_string(o.embeddingSize) +
-			": not allowed; use 0 for none or at least 8");
-	const double rest = 1 - o.embeddingClass - o.embeddingView - o.embeddingNoise;
-	if (rest < -1e-9)
-		throw UsageError(
-			"embedding_class + embedding_view + embedding_noise = " + std::to_string(1 - rest) +
-			": not allowed; use shares that sum to at most 1");
-	return std::max(rest, 0.0);
+	return std::max(1 - o.embeddingClass - o.embeddingView - o.embeddingNoise, 0.0);
 }
 
 std::vector<float> unitLength(const VectorXd& v)
@@ -76,6 +66,7 @@ std::vector<float> simulatedEmbedding(
 	const Scene& scene, const SceneObject& object, const mrpt::poses::CPose3D& T_world_camera,
 	const SimulatedDetectorOptions& o, uint64_t noiseKey)
 {
+	o.requireConsistent();
 	const double identity = identityShare(o);
 	if (o.embeddingSize == 0) return {};
 	const uint64_t label = hashedText(scene.labels.name(object.label));

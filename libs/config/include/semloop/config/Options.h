@@ -51,7 +51,7 @@ private:
  *  saving, dumping and the manual's configuration reference all follow from that.
  *
  *  Loading is strict: an unknown key, a value of the wrong type or out of range throws UsageError
- *  with file, section, key, value and what is allowed. A missing key or section keeps the default. */
+ *  with file, section, key, value and what is allowed; so do values that do not fit together. A missing key or section keeps the default. */
 class Options : public mrpt::config::CLoadableOptions
 {
 public:
@@ -65,6 +65,9 @@ public:
 	std::string markdownTable() const;
 
 	std::vector<OptionField> fields() const;
+
+	/** Throws UsageError when the values do not fit together; loading calls it. */
+	virtual void requireConsistent() const {}
 
 protected:
 	virtual void describe(OptionFields& fields) = 0;

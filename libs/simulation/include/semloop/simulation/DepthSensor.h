@@ -19,6 +19,8 @@ struct DepthSensorOptions : Options
 	double edge = 0.05;                              //!< never interpolated across [m]
 	double minimumCosine = 0.16;                     //!< of the angle of incidence
 
+	void requireConsistent() const override;
+
 protected:
 	void describe(OptionFields& fields) override;
 };

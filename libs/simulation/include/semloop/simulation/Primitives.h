@@ -15,6 +15,9 @@ namespace semloop
  *  Throws InputError, listing the kinds, for another. */
 Mesh makePrimitive(const std::string& kind, uint64_t seed);
 
+/** Throws InputError, listing the kinds, when this is none. */
+void requirePrimitive(const std::string& kind);
+
 /** The kinds above, sorted. */
 std::vector<std::string> primitiveKinds();
 

@@ -95,6 +95,7 @@ struct FurnitureGroup
 struct SceneDescription
 {
 	std::string file;
+	std::string modelsFile;  //!< its path
 	SceneOptions scene;
 	std::vector<std::pair<std::string, RoomOptions>> rooms;  //!< by name
 	PathOptions path;

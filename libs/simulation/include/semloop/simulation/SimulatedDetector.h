@@ -36,6 +36,8 @@ struct SimulatedDetectorOptions : Options
 	double embeddingNoise = 0.07;    //!< other in each image
 	double embeddingInstance = 0.3;  //!< of identity: not shared with objects of the same model
 
+	void requireConsistent() const override;
+
 protected:
 	void describe(OptionFields& fields) override;
 };
