@@ -1,5 +1,6 @@
 # Installs semloop into a folder of its own, builds tests/project/outside against it there, and runs
-# what came out. Arguments: BUILD_DIR, SOURCE_DIR, WORK_DIR, GENERATOR, CXX_FLAGS.
+# what came out, and --help of every installed program. Arguments: BUILD_DIR, SOURCE_DIR, WORK_DIR,
+# GENERATOR, CXX_FLAGS, PROGRAMS.
 include(${CMAKE_CURRENT_LIST_DIR}/Run.cmake)
 
 file(REMOVE_RECURSE ${WORK_DIR})
@@ -30,6 +31,9 @@ endforeach()
 
 run(${outside}/use-semloop ${outside}/liboutside-odometry.so)
 message(STATUS "${run_output}")
-foreach(program semloop-slam semloop-eval tum2rawlog rawlog-segment)
+if(NOT PROGRAMS)
+  message(FATAL_ERROR "PROGRAMS: give those that answer --help")
+endif()
+foreach(program IN LISTS PROGRAMS)
   run(${prefix}/bin/${program} --help)
 endforeach()

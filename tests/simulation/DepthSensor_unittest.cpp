@@ -2,6 +2,7 @@
 #include <semloop/config/Error.h>
 #include <semloop/simulation/DepthSensor.h>
 
+#include <array>
 #include <set>
 
 #include "HandMadeView.h"
@@ -17,6 +18,34 @@ DepthSensorOptions withoutRandomness()
 	options.lateralSigma = 0;
 	options.disparitySigma = 0;
 	return options;
+}
+
+/** Depth that grows by this much a pixel [m], from 1 m on, sensed with disparities as fine as the options
+ *  allow: K = 1024 * 500 * 0.075 = 38400, so that its steps are below 0.7 mm up to 5 m. Moments of the
+ *  error, 5 pixels away from the border, where places would be cut off. */
+struct RampError
+{
+	double mean = 0, variance = 0;  // [mm], [mm^2]
+};
+
+RampError errorOnRamp(float alongRow, float alongColumn, double lateralSigma)
+{
+	constexpr int kSize = 200, kBorder = 5;
+	RenderedView view = wallView(kSize, kSize, 1.0F);
+	for (int y = 0; y < kSize; y++)
+		for (int x = 0; x < kSize; x++)
+			view.depth.at<float>(y, x) += alongRow * float(x) + alongColumn * float(y);
+	DepthSensorOptions options = withoutRandomness();
+	options.disparityScale = 1024;
+	options.lateralSigma = lateralSigma;
+	const cv::Mat depth = senseDepth(view, options, 1);
+	cv::Mat error;
+	depth.convertTo(error, CV_64F);
+	cv::subtract(error, view.depth * 1000, error, cv::noArray(), CV_64F);
+	const cv::Range inside(kBorder, kSize - kBorder);
+	cv::Scalar mean, sigma;
+	cv::meanStdDev(error(inside, inside), mean, sigma);
+	return {mean[0], sigma[0] * sigma[0]};
 }
 
 /** Columns of the first row without depth. */
@@ -61,6 +90,28 @@ TEST(DepthSensor, OnlyWholeStepsOfDisparityAreMeasured)
 	for (int y = 0; y < 100; y++)
 		for (int x = 0; x < 200; x++)
 			ASSERT_TRUE(steps.count(depth.at<uint16_t>(y, x))) << depth.at<uint16_t>(y, x);
+}
+
+TEST(DepthSensor, TheLateralNoiseMakesAnErrorOfSlopeTimesSigmaAlongBothAxes)
+{
+	for (const double sigma : {0.5, 1.0})
+	{
+		// 10 mm a pixel, and 1 / 12 by rounding to millimetres; 36100 pixels: within 1 %.
+		const double expected = 100 * sigma * sigma + 1.0 / 12;
+		const std::array ramps{
+			errorOnRamp(0.01F, 0, sigma), errorOnRamp(0, 0.01F, sigma),
+			errorOnRamp(0.01F, 0.01F, sigma)};
+		EXPECT_NEAR(ramps[0].variance, expected, 0.04 * expected) << sigma;
+		EXPECT_NEAR(ramps[1].variance, expected, 0.04 * expected) << sigma;
+		EXPECT_NEAR(ramps[2].variance, 2 * expected, 0.08 * expected) << "the axes are independent";
+		for (const auto& ramp : ramps) EXPECT_NEAR(ramp.mean, 0, 0.3) << sigma;
+	}
+}
+
+TEST(DepthSensor, WithoutLateralNoiseARampHasNoneOfIt)
+{
+	// Rounding to millimetres and to steps of at most 0.7 mm: less than (1 + 0.7^2) / 12.
+	EXPECT_LT(errorOnRamp(0.01F, 0.01F, 0).variance, 0.13);
 }
 
 TEST(DepthSensor, AStepLeavesAShadowOnItsLeftAsWideAsTheDisparitiesDiffer)

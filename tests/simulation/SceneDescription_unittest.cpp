@@ -89,7 +89,7 @@ TEST_F(SceneDescriptionTest, AWrongGroupIsNamedWithFileSectionAndKey)
 			errorOf("[room.den]\ncorner = 0, 0\nsize = 4, 3\nfurniture = " + group + "\n" + kPath),
 			AllOf(
 				HasSubstr(place("[room.den] furniture = " + group)),
-				HasSubstr("no section of models.ini")))
+				HasSubstr("no section of " + folder_.file("models.ini"))))
 			<< group;
 }
 

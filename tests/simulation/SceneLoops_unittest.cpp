@@ -1,22 +1,22 @@
 // Whether places are seen again in the scenes of config_ini/scenes, from how different directions.
 #include <gtest/gtest.h>
-#include <mrpt/config/CConfigFile.h>
 #include <semloop/simulation/CameraPath.h>
-#include <semloop/simulation/SceneBuilder.h>
 #include <semloop/simulation/SceneRenderer.h>
 
-#include <algorithm>
 #include <cmath>
-#include <filesystem>
 #include <opencv2/core.hpp>
 #include <set>
+#include <tuple>
+
+#include "DescribedScenes.h"
 
 using namespace semloop;
 
 namespace
 {
-constexpr double kRate = 1.0;      // [Hz]
-constexpr int kSeenPixels = 400;   // of 640 x 480
+constexpr double kRate = 1.0;  // [Hz]
+constexpr int kWidth = 320, kHeight = 240;
+constexpr int kSeenPixels = 100;
 constexpr double kLongAgo = 20.0;  // [s]
 
 struct Glance
@@ -37,18 +37,17 @@ std::set<uint16_t> objectsIn(const cv::Mat& view)
 	return seen;
 }
 
-std::vector<Glance> glances(const std::string& name)
+std::vector<Glance> glances(const std::string& name, uint64_t seed)
 {
-	const mrpt::config::CConfigFile config(
-		SEMLOOP_SOURCE_DIR "/config_ini/scenes/" + name + ".ini");
-	const auto description =
-		SceneDescription::load(config, {"depth_sensor", "color_sensor", "detector", "odometry"});
-	const auto built = buildScene(description, FurnitureCatalog::open(), 1);
+	auto description = describe(name);
+	description.camera.width = kWidth;
+	description.camera.height = kHeight;
+	const auto built = buildScene(description, catalog(), seed);
 	const SceneRenderer renderer(built.scene);
 	const auto camera = cameraOf(description.camera);
 	std::vector<Glance> all;
 	for (const auto& pose :
-		 carriedCamera(built.way, description.path, kRate, mrpt::Clock::fromDouble(0), 1))
+		 carriedCamera(built.way, description.path, kRate, mrpt::Clock::fromDouble(0), seed))
 	{
 		const auto look = pose.pose.rotateVector({0, 0, 1});
 		all.push_back(
@@ -70,53 +69,51 @@ double turnBetween(const Glance& a, const Glance& b)
 	return mrpt::RAD2DEG(std::abs(std::remainder(a.heading - b.heading, 2 * M_PI)));
 }
 
-class SceneLoops : public testing::Test
+/** A scene and a seed. */
+class SceneLoops : public testing::TestWithParam<std::tuple<std::string, uint64_t>>
 {
 protected:
 	void SetUp() override
 	{
-		if (!std::filesystem::exists(FurnitureCatalog::kDefaultFolder))
-			GTEST_SKIP() << "sweethome3d-furniture is not installed";
+		if (!hasFurniture()) GTEST_SKIP() << "sweethome3d-furniture is not installed";
+		all_ = std::apply(glances, GetParam());
 	}
-	static void expectOppositeViews(const std::string& scene)
-	{
-		int pairs = 0;
-		const auto all = glances(scene);
-		for (const auto& a : all)
-			for (const auto& b : all)
-				pairs += b.time > a.time + kLongAgo && turnBetween(a, b) > 120 &&
-						 commonObjects(a, b) >= 4;
-		EXPECT_GE(pairs, 5);
-	}
-	static void expectNothingSeenAgain(const std::string& scene)
-	{
-		const auto all = glances(scene);
-		for (const auto& a : all)
-			for (const auto& b : all)
-			{
-				if (b.time <= a.time + kLongAgo) continue;
-				EXPECT_LT(commonObjects(a, b), 3) << a.time << " s and " << b.time << " s";
-			}
-	}
+	std::vector<Glance> all_;
 };
+class OppositeViews : public SceneLoops
+{
+};
+class NothingAgain : public SceneLoops
+{
+};
+
+auto scenesAndSeeds(const std::string& one, const std::string& other)
+{
+	return testing::Combine(testing::Values(one, other), testing::Range<uint64_t>(1, kSeeds + 1));
+}
+
+const auto kName = [](const auto& scene)
+{ return std::get<0>(scene.param) + "_seed" + std::to_string(std::get<1>(scene.param)); };
 }  // namespace
 
-TEST_F(SceneLoops, TheApartmentShowsFourObjectsFromOppositeSides)
+TEST_P(OppositeViews, FourObjectsAreSeenFromOppositeSides)
 {
-	expectOppositeViews("apartment");
+	int pairs = 0;
+	for (const auto& a : all_)
+		for (const auto& b : all_)
+			pairs +=
+				b.time > a.time + kLongAgo && turnBetween(a, b) > 120 && commonObjects(a, b) >= 4;
+	EXPECT_GE(pairs, 5);
 }
+INSTANTIATE_TEST_SUITE_P(Scene, OppositeViews, scenesAndSeeds("apartment", "office"), kName);
 
-TEST_F(SceneLoops, TheOfficeShowsFourObjectsFromOppositeSides)
+TEST_P(NothingAgain, NoThreeObjectsAreSeenASecondTime)
 {
-	expectOppositeViews("office");
+	for (const auto& a : all_)
+		for (const auto& b : all_)
+		{
+			if (b.time <= a.time + kLongAgo) continue;
+			EXPECT_LT(commonObjects(a, b), 3) << a.time << " s and " << b.time << " s";
+		}
 }
-
-TEST_F(SceneLoops, TheCorridorShowsNothingAgain)
-{
-	expectNothingSeenAgain("corridor");
-}
-
-TEST_F(SceneLoops, TheRoomsInARowShowNothingAgain)
-{
-	expectNothingSeenAgain("no_loop");
-}
+INSTANTIATE_TEST_SUITE_P(Scene, NothingAgain, scenesAndSeeds("corridor", "no_loop"), kName);

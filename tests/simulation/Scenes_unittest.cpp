@@ -1,35 +1,18 @@
 // What config_ini/scenes promise, with the furniture of the package sweethome3d-furniture.
 #include <gtest/gtest.h>
-#include <mrpt/config/CConfigFile.h>
-#include <semloop/simulation/SceneBuilder.h>
 
 #include <algorithm>
-#include <filesystem>
-#include <map>
 #include <set>
+
+#include "DescribedScenes.h"
 
 using namespace semloop;
 using Eigen::Vector2d;
 
 namespace
 {
-const std::vector<std::string> kScenes{"apartment", "office", "corridor", "no_loop"};
-constexpr uint64_t kSeeds = 5;
 constexpr double kBeforeDoor = 0.6;  // [m]
 constexpr double kTolerance = 1e-3;  // meshes have float corners [m]
-
-const FurnitureCatalog& catalog()
-{
-	static const auto all = FurnitureCatalog::open();
-	return all;
-}
-
-SceneDescription describe(const std::string& name)
-{
-	const mrpt::config::CConfigFile config(
-		SEMLOOP_SOURCE_DIR "/config_ini/scenes/" + name + ".ini");
-	return SceneDescription::load(config, {"depth_sensor", "color_sensor", "detector", "odometry"});
-}
 
 /** The upright box that a piece fills. */
 struct Solid
@@ -87,8 +70,7 @@ class Scenes : public testing::TestWithParam<std::string>
 protected:
 	void SetUp() override
 	{
-		if (!std::filesystem::exists(FurnitureCatalog::kDefaultFolder))
-			GTEST_SKIP() << "sweethome3d-furniture is not installed";
+		if (!hasFurniture()) GTEST_SKIP() << "sweethome3d-furniture is not installed";
 		description_ = describe(GetParam());
 		for (uint64_t seed = 1; seed <= kSeeds; ++seed)
 			built_.push_back(buildScene(description_, catalog(), seed));
