@@ -54,8 +54,10 @@ def main():
         common.simulation_text() + "They are mapped from noisy odometry and noisy instances with "
         f"`{common.CONFIG}`, once as it is (*default*) and once with the paper's rule that half of "
         "the query's edges are matched (*as published*: `loop_detection.min_edge_share=0.5`). The "
-        "corridor of identical rooms and `no_loop` are walked through once, nothing is seen again: "
-        "the right number of loops is zero.",
+        "corridor of identical rooms and `no_loop` are walked through once: the right number of loops "
+        "is zero. (Through the open doors some objects are in view more than "
+        f"{common.FRAMES_APART} frames before the camera comes to them; by the rule below these are "
+        "revisited places, too.)",
         f"`semloop-eval loops --frames-apart {common.FRAMES_APART} --minimum-pixels "
         f"{common.MINIMUM_PIXELS}` judges; smaller objects cannot come into the map. Its rule is the "
         "paper's, more than two objects in common with a frame more than "
