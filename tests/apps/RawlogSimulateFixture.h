@@ -2,12 +2,14 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <semloop/observations/RawlogReader.h>
 #include <sys/wait.h>
 
 #include <algorithm>
 #include <cstdlib>
 #include <filesystem>
 #include <map>
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -15,6 +17,17 @@
 
 namespace semloop
 {
+/** The observations of one class in a rawlog. */
+template <class Observation>
+std::vector<std::shared_ptr<Observation>> readAll(const std::string& path)
+{
+	RawlogReader reader(path);
+	std::vector<std::shared_ptr<Observation>> all;
+	while (const auto observation = reader.next())
+		if (auto one = std::dynamic_pointer_cast<Observation>(observation)) all.push_back(one);
+	return all;
+}
+
 /** rawlog-simulate in a folder with a small scene, den.ini: a room with a desk, a book and a box, 2 s. */
 class RawlogSimulate : public testing::Test
 {

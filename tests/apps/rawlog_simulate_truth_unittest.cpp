@@ -3,7 +3,6 @@
 #include <semloop/evaluation/PlyFile.h>
 #include <semloop/loop_closure/SemanticGraph.h>
 #include <semloop/observations/CObservationInstances.h>
-#include <semloop/observations/RawlogReader.h>
 #include <semloop/observations/RgbdFrame.h>
 #include <semloop/observations/Trajectory.h>
 
@@ -18,16 +17,6 @@ using testing::HasSubstr;
 namespace
 {
 const std::string kAllInView = "--seed 4";  // where the camera sees all three objects for long
-
-template <class Observation>
-std::vector<std::shared_ptr<Observation>> allOf(const std::string& path)
-{
-	RawlogReader reader(path);
-	std::vector<std::shared_ptr<Observation>> all;
-	while (const auto observation = reader.next())
-		if (auto one = std::dynamic_pointer_cast<Observation>(observation)) all.push_back(one);
-	return all;
-}
 
 /** The box of an object of X_objects.json, its middle the origin of its own frame. */
 struct OrientedBox
@@ -80,13 +69,13 @@ protected:
 	}
 	std::vector<std::shared_ptr<CObservationInstances>> instances(const std::string& kind) const
 	{
-		return allOf<CObservationInstances>(folder_.file("x_" + kind + ".rawlog"));
+		return readAll<CObservationInstances>(folder_.file("x_" + kind + ".rawlog"));
 	}
 	/** Mean of each colour image. */
 	std::vector<double> brightnessOf(const std::string& rawlog) const
 	{
 		std::vector<double> means;
-		for (const auto& scan : allOf<mrpt::obs::CObservation3DRangeScan>(folder_.file(rawlog)))
+		for (const auto& scan : readAll<mrpt::obs::CObservation3DRangeScan>(folder_.file(rawlog)))
 		{
 			const auto mean = cv::mean(rgbdFrameFrom(*scan).color);
 			means.push_back((mean[0] + mean[1] + mean[2]) / 3);
@@ -111,7 +100,7 @@ TEST_F(RawlogSimulateTruth, TheDepthOfEveryObjectLiesInItsBox)
 {
 	ASSERT_EQ(run(kAllInView + " --no-color --set depth_sensor.noise=false"), 0) << err_;
 	const auto objects = boxes();
-	const auto scans = allOf<mrpt::obs::CObservation3DRangeScan>(folder_.file("x.rawlog"));
+	const auto scans = readAll<mrpt::obs::CObservation3DRangeScan>(folder_.file("x.rawlog"));
 	const auto truth = instances("truth_instances");
 	const auto poses = readTumTrajectory(folder_.file("x_groundtruth.tum"));
 	std::map<ObjectId, int> points;

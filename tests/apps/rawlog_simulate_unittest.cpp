@@ -2,7 +2,6 @@
 #include <mrpt/obs/CObservationIMU.h>
 #include <semloop/loop_closure/SemanticGraph.h>
 #include <semloop/observations/CObservationInstances.h>
-#include <semloop/observations/RawlogReader.h>
 #include <semloop/observations/RgbdFrame.h>
 #include <semloop/observations/Trajectory.h>
 
@@ -18,15 +17,6 @@ namespace
 {
 constexpr std::size_t kFrames = 11;  // 0.8 m at 0.4 m/s, 5 Hz, both ends
 
-template <class Observation>
-std::vector<std::shared_ptr<Observation>> readAll(const std::string& path)
-{
-	RawlogReader reader(path);
-	std::vector<std::shared_ptr<Observation>> all;
-	while (const auto observation = reader.next())
-		if (auto one = std::dynamic_pointer_cast<Observation>(observation)) all.push_back(one);
-	return all;
-}
 using Scan = mrpt::obs::CObservation3DRangeScan;
 }  // namespace
 

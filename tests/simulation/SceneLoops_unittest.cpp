@@ -16,7 +16,7 @@ namespace
 {
 constexpr double kRate = 1.0;  // [Hz]
 constexpr int kWidth = 320, kHeight = 240;
-constexpr int kSeenPixels = 100;
+constexpr int kSeenPixels = 100;   // 400 of 640 x 480
 constexpr double kLongAgo = 20.0;  // [s]
 
 struct Glance
