@@ -215,7 +215,7 @@ TEST(RelativePoseError, OfAScaledStraightWalkIsTheScaleErrorPerSecond)
 		estimate.push_back(position(1.05 * 0.25 * i, 0, 0));
 	}
 	const auto error = relativePoseError(pairsOf(estimate, truth, 0.25), 1.0);
-	EXPECT_EQ(error.translation.count, 13u);  // every pose but those in the last second
+	EXPECT_EQ(error.translation.count, 12u);  // not the last second, not to the last pose
 	EXPECT_NEAR(error.translation.rmse, 0.05, 1e-9);
 	EXPECT_NEAR(error.translation.max, 0.05, 1e-9);
 	EXPECT_NEAR(error.rotation.max, 0, 1e-9);
@@ -232,7 +232,7 @@ TEST(RelativePoseError, OverAMetreCountsTheWayAlongTheEstimate)
 		estimate.push_back(position(0, 0.5 * i, 0));
 	}
 	const auto error = relativePoseError(pairsOf(estimate, truth), 1.0, IntervalUnit::Metres);
-	EXPECT_EQ(error.translation.count, 5u);
+	EXPECT_EQ(error.translation.count, 4u);
 	EXPECT_NEAR(error.translation.mean, 0.2, 1e-9);
 }
 
@@ -243,7 +243,7 @@ TEST(RelativePoseError, OfAYawDriftIsItsRate)
 	std::vector<CPose3D> estimate;
 	for (int i = 0; i < 6; i++) estimate.emplace_back(0, 0, 0, i * 0.5 * kPi / 180, 0, 0);
 	const auto error = relativePoseError(pairsOf(estimate, truth), 2.0);
-	EXPECT_EQ(error.rotation.count, 4u);
+	EXPECT_EQ(error.rotation.count, 3u);
 	EXPECT_NEAR(error.rotation.rmse * 180 / kPi, 1.0, 1e-9);
 	EXPECT_NEAR(error.translation.max, 0, 1e-12);
 }
@@ -272,6 +272,48 @@ TEST(RelativePoseError, RefusesTooFewPairsAndAnIntervalThatIsNotPositive)
 	EXPECT_THROW(relativePoseError(pairs, 0), UsageError);
 	EXPECT_THROW(relativePoseError(pairs, -1), UsageError);
 	EXPECT_THROW(relativePoseError(pairs, std::numeric_limits<double>::quiet_NaN()), UsageError);
+}
+
+/** Forty poses of RGB-D SLAM on freiburg1_xyz and the benchmark's ground truth. */
+std::vector<PosePair> publishedPair()
+{
+	const std::string folder = SEMLOOP_SOURCE_DIR "/tests/evaluation/published_pair";
+	return associateByTime(
+		readTumTrajectory(folder + "/estimate.tum"), readTumTrajectory(folder + "/truth.tum"));
+}
+
+constexpr double kPrinted = 1e-9;  // the scripts' figures, printed with nine digits
+
+void expectSummary(
+	const ErrorSummary& error, std::size_t count, double rmse, double mean, double median,
+	double max, double unit = 1)
+{
+	EXPECT_EQ(error.count, count);
+	EXPECT_NEAR(error.rmse / unit, rmse, kPrinted);
+	EXPECT_NEAR(error.mean / unit, mean, kPrinted);
+	EXPECT_NEAR(error.median / unit, median, kPrinted);
+	EXPECT_NEAR(error.max / unit, max, kPrinted);
+}
+
+/** What evaluate_ate.py of the TUM RGB-D benchmark prints for the two files. */
+TEST(PublishedPair, HasTheAbsoluteErrorOfTheBenchmarksScript)
+{
+	expectSummary(
+		absoluteTrajectoryError(publishedPair()).translation, 40, 0.008189946, 0.007377837,
+		0.006996018, 0.014787410);
+}
+
+/** What evaluate_rpe.py --fixed_delta --delta 1 (0.1) --delta_unit s (m) prints for them. */
+TEST(PublishedPair, HasTheRelativeErrorsOfTheBenchmarksScript)
+{
+	constexpr double kDegree = kPi / 180;
+	const auto pairs = publishedPair();
+	const auto second = relativePoseError(pairs, 1.0);
+	expectSummary(second.translation, 11, 0.016134575, 0.015244391, 0.016359164, 0.026876793);
+	expectSummary(second.rotation, 11, 0.788560172, 0.719726633, 0.612007100, 1.234470691, kDegree);
+	const auto metre = relativePoseError(pairs, 0.1, IntervalUnit::Metres);
+	expectSummary(metre.translation, 27, 0.009960959, 0.009008969, 0.008232986, 0.018945860);
+	expectSummary(metre.rotation, 27, 0.550822647, 0.463609428, 0.405031942, 1.208664684, kDegree);
 }
 }  // namespace
 }  // namespace semloop

@@ -60,9 +60,10 @@ enum class IntervalUnit
 	Metres  //!< travelled along the estimate
 };
 
-/** Relative pose error (Sturm et al., IROS 2012, Eq. (2)) over a fixed interval:
- *  E_i = (truth_i^-1 truth_j)^-1 (estimate_i^-1 estimate_j), where j is the pose nearest to one
- *  interval after i. */
+/** Relative pose error over a fixed interval, as the TUM benchmark's evaluate_rpe.py computes it:
+ *  E_i = (estimate_j^-1 estimate_i)^-1 (truth_j^-1 truth_i), where j is the pose nearest to one
+ *  interval after i; without the i whose j is the last pose. The paper (Sturm et al., IROS 2012,
+ *  Eq. (2)) has the motions from i to j: the angles are the same, the translations are not. */
 struct RelativePoseError
 {
 	double interval = 0;  //!< [s] or [m]
@@ -71,7 +72,7 @@ struct RelativePoseError
 	ErrorSummary rotation;     //!< angle of rot(E_i) [rad]
 };
 
-/** Poses with less than an interval behind them have no E_i, so that a short trajectory gives a
+/** Poses with no more than an interval behind them have no E_i, so that a short trajectory gives a
  *  summary with count 0. Throws InputError with fewer than 3 pairs and UsageError for an interval
  *  that is not positive. */
 RelativePoseError relativePoseError(
