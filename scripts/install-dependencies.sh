@@ -14,7 +14,7 @@ packages=(
   # simulation
   libembree-dev libtinyobjloader-dev libzip-dev sweethome3d-furniture
   # tests and benchmarks
-  libgtest-dev libgmock-dev libbenchmark-dev mrpt-common xvfb xauth xz-utils libgl1-mesa-dri
+  libgtest-dev libgmock-dev libbenchmark-dev mrpt-common xvfb xauth xdotool xz-utils libgl1-mesa-dri
   # MRPT's programs, to look at rawlogs and scenes; the demo's table
   mrpt-apps python3
 )

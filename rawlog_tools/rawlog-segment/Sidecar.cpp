@@ -136,7 +136,6 @@ void Sidecar::write(const CObservationInstances& observation)
 	{
 		CObservationComment header;
 		header.timestamp = observation.timestamp;
-		header.sensorLabel = "rawlog-segment";
 		header.text = settings_.dump();
 		writer_->write(header);
 		headerWritten_ = true;

@@ -285,14 +285,19 @@ TEST(CObservationInstances, DescribesTheTrueObjectWhereThereIsOne)
 	EXPECT_NE(text.str().find("truly object 17"), std::string::npos);
 }
 
-TEST(CObservationInstances, ExportsOneRowOfText)
+TEST(CObservationInstances, ExportsARowOfTextForEachInstance)
 {
-	auto o = example(1);
+	auto o = example(2);
+	o.instances[0].box = {10, 3, 6, 1};
 	o.instances[0].labelScores = {{58, 0.5f}};  // potted plant
 	o.instances[0].mask = InstanceMask(o.imageSize(), {{3, 10, 15}});
+	o.instances[1] = o.instances[0];
+	o.instances[1].labelScores = {{0, 1.0f}};
 	EXPECT_TRUE(o.exportTxtSupported());
-	EXPECT_EQ(o.exportTxtDataRow(), "1 potted_plant 0.5 0.875 5");
+	EXPECT_EQ(
+		o.exportTxtDataRow(),
+		"0 potted_plant 0.5 0.875 10 3 6 1 5\n1305031453.374112 1 person 1 0.875 10 3 6 1 5");
 	EXPECT_EQ(o.exportTxtHeader().find('\n'), std::string::npos);
 	o.instances.clear();
-	EXPECT_EQ(o.exportTxtDataRow(), "0");
+	EXPECT_EQ(o.exportTxtDataRow(), "-1 - 0 0 0 0 0 0 0");
 }

@@ -336,3 +336,21 @@ TEST(Rawlog, NamesOfFoldersAndSidecarsFollowTheRawlogs)
 	EXPECT_EQ(semloop::externalImagesFolder("x"), "x_Images");
 	EXPECT_EQ(semloop::instancesSidecarPath("/d/x.rawlog"), "/d/x_instances.rawlog");
 }
+
+TEST(Rawlog, ObjectsCanBeCopiedByteByByte)
+{
+	const TemporaryFolder folder;
+	const std::string path = writeRawlog(folder, 3);
+	RawlogReader reader(path);
+	RawlogWriter writer(folder.file("copy.rawlog"));
+	int count = 0;
+	while (const auto object = reader.nextObject())
+	{
+		EXPECT_TRUE(std::dynamic_pointer_cast<CObservationOdometry>(object->object));
+		writer.writeBytes(object->bytes);
+		count++;
+	}
+	writer.close();
+	EXPECT_EQ(count, 3);
+	EXPECT_EQ(semloop::readBytes(folder.file("copy.rawlog")), semloop::readBytes(path));
+}

@@ -4,6 +4,7 @@
 #include <semloop/config/Error.h>
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -31,6 +32,15 @@ public:
 		return ahead_.substr(0, count);
 	}
 
+	/** From here on takeCopy() has all bytes that are read. */
+	void startCopy() { copy_.emplace(); }
+	std::string takeCopy()
+	{
+		std::string bytes = std::move(*copy_);
+		copy_.reset();
+		return bytes;
+	}
+
 	GzInput file;
 
 protected:
@@ -40,6 +50,7 @@ protected:
 		ahead_.erase(0, first);
 		if (first + file.read(static_cast<uint8_t*>(buffer) + first, count - first) < count)
 			throw InputError("the file ends inside an object");
+		if (copy_) copy_->append(static_cast<const char*>(buffer), count);
 		return count;
 	}
 	std::size_t write(const void*, std::size_t) override
@@ -49,6 +60,7 @@ protected:
 
 private:
 	std::string ahead_;
+	std::optional<std::string> copy_;
 };
 
 /** Collects what an object writes. */

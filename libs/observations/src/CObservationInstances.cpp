@@ -1,3 +1,4 @@
+#include <mrpt/core/format.h>
 #include <mrpt/core/initializer.h>
 #include <mrpt/serialization/CArchive.h>
 #include <semloop/config/Error.h>
@@ -134,21 +135,25 @@ void CObservationInstances::getDescriptionAsText(std::ostream& o) const
 
 std::string CObservationInstances::exportTxtHeader() const
 {
-	return "COUNT, then for each instance: LABEL SCORE CONFIDENCE AREA_PX";
+	return "INSTANCE LABEL SCORE CONFIDENCE BOX_X BOX_Y BOX_WIDTH BOX_HEIGHT AREA_PX";
 }
 
 std::string CObservationInstances::exportTxtDataRow() const
 {
-	std::ostringstream row;
-	row << instances.size();
-	for (const Instance& instance : instances)
+	if (instances.empty()) return "-1 - 0 0 0 0 0 0 0";
+	std::ostringstream rows;
+	for (std::size_t i = 0; i < instances.size(); i++)
 	{
+		const Instance& instance = instances[i];
+		if (i > 0) rows << "\n" << mrpt::format("%16.6f ", mrpt::Clock::toDouble(timestamp));
 		std::string label = labels.name(instance.label());
 		std::replace(label.begin(), label.end(), ' ', '_');  // blanks separate the columns
-		row << " " << label << " " << instance.labelScores.front().score << " "
-			<< instance.confidence << " " << instance.mask.area();
+		const cv::Rect& box = instance.box;
+		rows << i << " " << label << " " << instance.labelScores.front().score << " "
+			 << instance.confidence << " " << box.x << " " << box.y << " " << box.width << " "
+			 << box.height << " " << instance.mask.area();
 	}
-	return row.str();
+	return rows.str();
 }
 
 MRPT_INITIALIZER(registerObservations)

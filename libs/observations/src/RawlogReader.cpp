@@ -95,6 +95,14 @@ mrpt::obs::CObservation::Ptr RawlogReader::next()
 	return observation;
 }
 
+std::optional<RawlogObject> RawlogReader::nextObject()
+{
+	stream_->archive.startCopy();
+	const auto object = readObject();
+	if (!object) return std::nullopt;
+	return RawlogObject{object, stream_->archive.takeCopy()};
+}
+
 CSerializable::Ptr RawlogReader::readObject()
 {
 	using State = GzInput::State;

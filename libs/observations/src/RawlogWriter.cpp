@@ -43,6 +43,12 @@ void RawlogWriter::write(const mrpt::serialization::CSerializable& object)
 	stream_->file.write(stream_->buffer.bytes.data(), stream_->buffer.bytes.size());
 }
 
+void RawlogWriter::writeBytes(const std::string& bytes)
+{
+	if (!stream_) throw std::logic_error("RawlogWriter: writeBytes() after close()");
+	stream_->file.write(bytes.data(), bytes.size());
+}
+
 void RawlogWriter::close()
 {
 	if (!stream_) return;

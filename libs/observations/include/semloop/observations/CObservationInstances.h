@@ -2,6 +2,7 @@
 
 #include <mrpt/img/TCamera.h>
 #include <mrpt/obs/CObservation.h>
+#include <mrpt/opengl/Visualizable.h>
 #include <mrpt/poses/CPose3D.h>
 #include <semloop/observations/InstanceMask.h>
 #include <semloop/observations/LabelSet.h>
@@ -35,12 +36,16 @@ struct Instance
 	uint32_t label() const { return labelScores.front().label; }
 };
 
+// MRPT's Visualizable has a public destructor that is not virtual; nobody owns an observation as one.
+#pragma GCC diagnostic push
+#pragma GCC diagnostic ignored "-Wnon-virtual-dtor"
+
 /** What an instance segmentation saw in one image.
  *
  *  The camera and sensorPose are those of the colour image: sensorPose is the camera on the robot
  *  in MRPT's convention (x forward, y left, z up), as CObservation3DRangeScan has it. The timestamp
  *  is that of the range scan it belongs to. */
-class CObservationInstances : public mrpt::obs::CObservation
+class CObservationInstances : public mrpt::obs::CObservation, public mrpt::opengl::Visualizable
 {
 	DEFINE_SERIALIZABLE(CObservationInstances, semloop)
 
@@ -60,9 +65,22 @@ public:
 	void getSensorPose(mrpt::poses::CPose3D& out) const override { out = sensorPose; }
 	void setSensorPose(const mrpt::poses::CPose3D& pose) override { sensorPose = pose; }
 	void getDescriptionAsText(std::ostream& o) const override;
+
+	/** @name A table for `rawlog-edit --export-txt`: a row for each instance
+	 * @{ */
 	bool exportTxtSupported() const override { return true; }
+	/** `INSTANCE LABEL SCORE CONFIDENCE BOX_X BOX_Y BOX_WIDTH BOX_HEIGHT AREA_PX` behind MRPT's time. */
 	std::string exportTxtHeader() const override;
+	/** Rows from the second on begin with the time, as MRPT writes it before the first. Without an
+	 *  instance one row says so: number -1, label "-". Blanks in a label become "_". */
 	std::string exportTxtDataRow() const override;
+	/** @} */
+
+	/** For RawLogViewer, in the robot's frame: the masks as a picture 1 m in front of the camera, and the
+	 *  points of the depth crops, all in the colours of their labels. */
+	void getVisualizationInto(mrpt::opengl::CSetOfObjects& out) const override;
 };
+
+#pragma GCC diagnostic pop
 
 }  // namespace semloop

@@ -6,10 +6,18 @@
 #include <cstddef>
 #include <deque>
 #include <memory>
+#include <optional>
 #include <string>
 
 namespace semloop
 {
+/** An object as it stands in a file. */
+struct RawlogObject
+{
+	mrpt::serialization::CSerializable::Ptr object;
+	std::string bytes;  //!< its serialised form, as it was read
+};
+
 /** Reads the observations of a rawlog one by one, in file order, without loading the file.
  *
  *  Both rawlog formats: plain observations, and sensory frames with actions (their observations
@@ -29,6 +37,11 @@ public:
 
 	/** The next observation; empty at the end of the file. */
 	mrpt::obs::CObservation::Ptr next();
+
+	/** The next object, an observation or a sensory frame or actions, with its bytes: for programs that
+	 *  write a rawlog anew, bit by bit. Names of external images stay as they are. Empty at the end of
+	 *  the file; throws as next(). */
+	std::optional<RawlogObject> nextObject();
 
 	const std::string& path() const { return path_; }
 	/** Position in the file as stored on disk, in [0, 1], for progress bars. */

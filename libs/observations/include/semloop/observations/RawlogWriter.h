@@ -20,6 +20,8 @@ public:
 
 	/** Throws InputError when the disk is full. */
 	void write(const mrpt::serialization::CSerializable& object);
+	/** Same, for the bytes of an object from RawlogReader::nextObject(). */
+	void writeBytes(const std::string& bytes);
 	/** Flushes and gives the file its final name. */
 	void close();
 
