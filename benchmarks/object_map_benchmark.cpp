@@ -1,9 +1,11 @@
 #include <benchmark/benchmark.h>
 #include <semloop/object_map/TsdfVolume.h>
+#include <semloop/observations/CameraFrames.h>
 
 #include <map>
 
 #include "../tests/object_map/AnalyticScene.h"
+#include "../tests/object_map/ObjectMapFixtures.h"
 
 // A desk-like scene: two rows of spheres and boxes before a wall, mapped from seven views on an arc.
 namespace
@@ -150,6 +152,37 @@ BENCHMARK_CAPTURE(
 		copy.merge(v, mrpt::poses::CPose3D(0.01, 0, 0, 0.1, 0, 0));
 	})
 	->Unit(benchmark::kMillisecond);
+
+/** What a particle filter does: one observation of the ten balls in view, a thousand poses, thirty objects
+ *  in the map. */
+void likelihoodOfThousandPoses(benchmark::State& state)
+{
+	using namespace semloop::synthetic;
+	synthetic::Scene balls;
+	const std::vector<uint32_t> labels(30, kCup);
+	for (int i = 0; i < 30; ++i)
+	{
+		const double angle = 2 * M_PI * i / 30, radius = 0.5 + 0.25 * (i % 3);
+		const TPoint3D centre(radius * std::cos(angle), radius * std::sin(angle), 0.85);
+		balls.spheres.push_back({centre, 0.04, {40, 40, 220}, i + 1, 0});
+	}
+	const auto seenFrom = [&](int place) {
+		return observationOf(
+			renderView(balls, testCamera(), onCircle(place, 8)), labels, CPose3D());
+	};
+	CObjectMap map;
+	for (int place = 0; place < 8; ++place)
+		map.insertObservation(seenFrom(place), onCircle(place, 8) + (-robotFromCamera(CPose3D())));
+	auto observation = seenFrom(1);
+	observation.instances.resize(std::min<std::size_t>(10, observation.instances.size()));
+	for (auto _ : state)
+		for (int i = 0; i < 1000; ++i)
+			benchmark::DoNotOptimize(
+				map.computeObservationLikelihood(observation, CPose3D(0.001 * i, 0, 1, 0, 0, 0)));
+	state.counters["objects"] = static_cast<double>(map.objects().size());
+	state.counters["detections"] = static_cast<double>(observation.instances.size());
+}
+BENCHMARK(likelihoodOfThousandPoses)->Unit(benchmark::kMillisecond);
 
 }  // namespace
 

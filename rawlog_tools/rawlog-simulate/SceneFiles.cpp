@@ -1,8 +1,8 @@
 #include "SceneFiles.h"
 
 #include <semloop/config/Error.h>
-#include <semloop/loop_closure/SemanticGraph.h>
 #include <semloop/object_map/ObjectFiles.h>
+#include <semloop/object_map/SemanticGraph.h>
 
 #include <filesystem>
 #include <fstream>

@@ -1,7 +1,7 @@
 // That what rawlog-simulate writes as true is what the camera sees, and that the sensors' sections count.
 #include <mrpt/obs/CObservation3DRangeScan.h>
 #include <semloop/evaluation/PlyFile.h>
-#include <semloop/loop_closure/SemanticGraph.h>
+#include <semloop/object_map/SemanticGraph.h>
 #include <semloop/observations/CObservationInstances.h>
 #include <semloop/observations/RgbdFrame.h>
 #include <semloop/observations/Trajectory.h>

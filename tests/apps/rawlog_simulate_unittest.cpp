@@ -1,6 +1,6 @@
 #include <mrpt/obs/CObservation3DRangeScan.h>
 #include <mrpt/obs/CObservationIMU.h>
-#include <semloop/loop_closure/SemanticGraph.h>
+#include <semloop/object_map/SemanticGraph.h>
 #include <semloop/observations/CObservationInstances.h>
 #include <semloop/observations/RgbdFrame.h>
 #include <semloop/observations/Trajectory.h>

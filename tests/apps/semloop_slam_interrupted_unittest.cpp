@@ -1,7 +1,7 @@
 #include <mrpt/maps/CSimpleMap.h>
 #include <mrpt/opengl/COpenGLScene.h>
-#include <semloop/loop_closure/SemanticGraph.h>
 #include <semloop/object_map/ObjectFiles.h>
+#include <semloop/object_map/SemanticGraph.h>
 #include <semloop/pose_graph/CeresPoseGraph.h>
 #include <semloop/pose_graph/G2oFile.h>
 

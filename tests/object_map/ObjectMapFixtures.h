@@ -1,6 +1,7 @@
 #pragma once
 
 #include <mrpt/io/CMemoryStream.h>
+#include <mrpt/obs/CObservation3DRangeScan.h>
 #include <mrpt/serialization/CArchive.h>
 #include <semloop/object_map/CObjectMap.h>
 
@@ -97,6 +98,25 @@ inline CObservationInstances observationOf(
 		observation.instances.push_back(instance);
 	}
 	return observation;
+}
+
+/** The range scan that the instances were found in. */
+inline mrpt::obs::CObservation3DRangeScan scanOf(
+	const View& view, const CObservationInstances& instances)
+{
+	mrpt::obs::CObservation3DRangeScan scan;
+	scan.timestamp = instances.timestamp;
+	scan.sensorPose = instances.sensorPose;
+	scan.cameraParams = scan.cameraParamsIntensity = instances.camera;
+	scan.hasIntensityImage = scan.hasRangeImage = true;
+	scan.intensityImage = mrpt::img::CImage(view.frame.color, mrpt::img::DEEP_COPY);
+	scan.rangeUnits = 0.001f;
+	scan.rangeImage_setSize(view.frame.depth.rows, view.frame.depth.cols);
+	for (int row = 0; row < view.frame.depth.rows; ++row)
+		for (int column = 0; column < view.frame.depth.cols; ++column)
+			scan.rangeImage(row, column) =
+				uint16_t(std::lround(1000 * view.frame.depth.at<float>(row, column)));
+	return scan;
 }
 
 }  // namespace semloop::synthetic

@@ -18,22 +18,6 @@ MRPT_INITIALIZER(registerSemanticMatchingCost)
 
 namespace
 {
-/** What is left to "anything else" says nothing about the labels' agreement: the paper's l_k and
- *  l_j are certain, its confidence c_k is not in Eq. (3). */
-double labelProbability(
-	const ConfusionMatrix& confusion, const LabelScores& observed, const LabelScores& truth)
-{
-	const auto sum = [](const LabelScores& scores)
-	{
-		double total = 0;
-		for (const auto& s : scores) total += s.score;
-		return total;
-	};
-	const double mass = sum(observed) * sum(truth);
-	if (mass <= 0) return 0;
-	return std::min(1.0, confusion.agreement(observed, truth) / mass);
-}
-
 double maskOverlap(const InstanceMask* a, const InstanceMask* b)
 {
 	if (!a || !b) return 0;
@@ -67,7 +51,7 @@ double SemanticMatchingCost::cost(
 		(landmark.surface->centre - detection.surface->centre).norm() > options.maxCentreDistance)
 		return std::numeric_limits<double>::infinity();
 
-	const double p = labelProbability(*confusion_, *detection.labelScores, *landmark.labelScores);
+	const double p = labelAgreement(*confusion_, *detection.labelScores, *landmark.labelScores);
 	if (p <= 0) return 1;
 	double similarity = maskOverlap(landmark.mask, detection.mask);
 	if (options.lambda < 1 && landmark.embeddings && detection.embeddings)
@@ -75,6 +59,21 @@ double SemanticMatchingCost::cost(
 			similarity =
 				options.lambda * similarity + (1 - options.lambda) * std::clamp(*d_f, 0.0, 1.0);
 	return 1 - similarity * p;
+}
+
+// The paper's l_k and l_j are certain, its confidence c_k is not in Eq. (3).
+double labelAgreement(
+	const ConfusionMatrix& confusion, const LabelScores& observed, const LabelScores& truth)
+{
+	const auto sum = [](const LabelScores& scores)
+	{
+		double total = 0;
+		for (const auto& s : scores) total += s.score;
+		return total;
+	};
+	const double mass = sum(observed) * sum(truth);
+	if (mass <= 0) return 0;
+	return std::min(1.0, confusion.agreement(observed, truth) / mass);
 }
 
 std::optional<double> embeddingSimilarity(

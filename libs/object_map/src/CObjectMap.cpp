@@ -212,6 +212,7 @@ void CObjectMap::internal_clear()
 {
 	objects_.clear();
 	nextId_ = 0;
+	unpaired_ = {};
 }
 
 }  // namespace semloop

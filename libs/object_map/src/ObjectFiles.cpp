@@ -6,6 +6,7 @@
 #include <mrpt/system/filesystem.h>
 #include <semloop/config/Error.h>
 #include <semloop/object_map/ObjectFiles.h>
+#include <semloop/object_map/SemanticGraph.h>
 
 #include <algorithm>
 #include <cctype>
@@ -130,6 +131,7 @@ void CObjectMap::saveMetricMapRepresentationToFile(const std::string& filePrefix
 	scene.insert(all);
 	if (!scene.saveToFile(filePrefix + ".3Dscene")) cannotWrite(filePrefix + ".3Dscene");
 	saveObjectMap(filePrefix + ".objmap", *this);
+	SemanticGraph::fromMap(*this).save(filePrefix + ".json");
 
 	const std::string folder = filePrefix + "_objects";
 	std::error_code error;

@@ -33,6 +33,22 @@ mrpt::opengl::CSetOfTriangles::Ptr trianglesOf(const TriangleMesh& mesh)
 	triangles->insertTriangles(all.begin(), all.end());
 	return triangles;
 }
+
+mrpt::opengl::CBox::Ptr frameOf(const mrpt::math::TBoundingBox& box)
+{
+	auto frame = mrpt::opengl::CBox::Create(box.min, box.max, true, 1.0f);
+	frame->setColor_u8(mrpt::img::TColor(40, 110, 220));
+	return frame;
+}
+
+mrpt::opengl::CText::Ptr nameAbove(const mrpt::math::TBoundingBox& box, const std::string& name)
+{
+	auto text = mrpt::opengl::CText::Create(name);
+	text->setColor_u8(mrpt::img::TColor(20, 20, 20));
+	const auto middle = (box.min + box.max) * 0.5;
+	text->setLocation(middle.x, middle.y, box.max.z);
+	return text;
+}
 }  // namespace
 
 std::string CObjectMap::asString() const
@@ -61,17 +77,11 @@ void CObjectMap::getVisualizationInto(mrpt::opengl::CSetOfObjects& out) const
 		auto group = mrpt::opengl::CSetOfObjects::Create();
 		group->setName(labelName(object) + " " + std::to_string(id));
 		group->setPose(object.T_world_object);
-		group->insert(trianglesOf(object.volume->mesh()));
+		if (visualizationOptions.meshes) group->insert(trianglesOf(object.volume->mesh()));
 		if (const auto box = object.volume->boundingBox())
 		{
-			auto frame = mrpt::opengl::CBox::Create(box->min, box->max, true, 1.0f);
-			frame->setColor_u8(mrpt::img::TColor(40, 110, 220));
-			group->insert(frame);
-			auto text = mrpt::opengl::CText::Create(group->getName());
-			text->setColor_u8(mrpt::img::TColor(20, 20, 20));
-			const auto middle = (box->min + box->max) * 0.5;
-			text->setLocation(middle.x, middle.y, box->max.z);
-			group->insert(text);
+			if (visualizationOptions.boxes) group->insert(frameOf(*box));
+			if (visualizationOptions.names) group->insert(nameAbove(*box, group->getName()));
 		}
 		out.insert(group);
 		for (const auto& [other, times] : object.covisible)
@@ -81,7 +91,15 @@ void CObjectMap::getVisualizationInto(mrpt::opengl::CSetOfObjects& out) const
 				edges->appendLine(a.x, a.y, a.z, b.x, b.y, b.z);
 			}
 	}
-	if (!objects_.empty()) out.insert(edges);
+	if (!objects_.empty() && visualizationOptions.edges) out.insert(edges);
+}
+
+void ObjectMapVisualizationOptions::describe(OptionFields& fields)
+{
+	fields.flag("meshes", meshes, "the objects' surfaces");
+	fields.flag("boxes", boxes, "boxes round the objects");
+	fields.flag("names", names, "labels and ids of the objects");
+	fields.flag("edges", edges, "lines between objects that were seen together");
 }
 
 CObjectMap::TMapDefinition::TMapDefinition() = default;
@@ -90,13 +108,17 @@ void CObjectMap::TMapDefinition::loadFromConfigFile_map_specific(
 	const mrpt::config::CConfigFileBase& source, const std::string& sectionNamePrefix)
 {
 	insertOpts.loadFromConfigFile(source, sectionNamePrefix + "_insertOpts");
+	likelihoodOpts.loadFromConfigFile(source, sectionNamePrefix + "_likelihoodOpts");
 	maintenanceOpts.loadFromConfigFile(source, sectionNamePrefix + "_maintenanceOpts");
+	visualizationOpts.loadFromConfigFile(source, sectionNamePrefix + "_visualizationOpts");
 }
 
 void CObjectMap::TMapDefinition::dumpToTextStream_map_specific(std::ostream& out) const
 {
 	insertOpts.dumpToTextStream(out);
+	likelihoodOpts.dumpToTextStream(out);
 	maintenanceOpts.dumpToTextStream(out);
+	visualizationOpts.dumpToTextStream(out);
 }
 
 mrpt::maps::CMetricMap* CObjectMap::internal_CreateFromMapDefinition(
@@ -105,7 +127,9 @@ mrpt::maps::CMetricMap* CObjectMap::internal_CreateFromMapDefinition(
 	const auto& definition = dynamic_cast<const TMapDefinition&>(def);
 	auto* map = new CObjectMap();
 	map->insertionOptions = definition.insertOpts;
+	map->likelihoodOptions = definition.likelihoodOpts;
 	map->maintenanceOptions = definition.maintenanceOpts;
+	map->visualizationOptions = definition.visualizationOpts;
 	return map;
 }
 

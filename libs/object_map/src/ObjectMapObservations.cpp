@@ -4,138 +4,117 @@
 #include <semloop/association/ObjectAssociator.h>
 #include <semloop/config/Error.h>
 #include <semloop/object_map/CObjectMap.h>
-#include <semloop/observations/CameraFrames.h>
-#include <semloop/observations/Rectifier.h>
 
 #include <algorithm>
-#include <cmath>
+#include <utility>
+
+#include "MapConfusion.h"
+#include "SegmentedFrame.h"
 
 namespace semloop
 {
 namespace
 {
-using mrpt::math::TPoint3D;
+using mrpt::obs::CObservation3DRangeScan;
 using mrpt::poses::CPose3D;
-
-constexpr double kCorrectLabels = 0.8;  // of the confusion matrix, which nobody gave us
-constexpr double kUnexplained = 0.1;    // share of detections that a good map does not explain
-
-/** Instances with depth crops as a frame: depth known inside the crops only. */
-struct CroppedFrame
-{
-	RgbdFrame frame;
-	std::vector<Instance> instances;
-};
-
-CroppedFrame frameFromCrops(const CObservationInstances& observation)
-{
-	CroppedFrame result;
-	const cv::Size size = observation.imageSize();
-	result.frame.time = observation.timestamp;
-	result.frame.camera = observation.camera;
-	result.frame.T_robot_camera = robotFromCamera(observation.sensorPose);
-	// The observation has no colours: one a label tells the objects apart.
-	result.frame.color = cv::Mat(size, CV_8UC3, cv::Scalar::all(160));
-	result.frame.depth = cv::Mat(size, CV_32FC1, cv::Scalar::all(0));
-	for (const auto& instance : observation.instances)
-	{
-		if (!instance.depth) continue;
-		cv::Mat metres;
-		instance.depth->depth.convertTo(metres, CV_32FC1, double(instance.depth->unit));
-		metres.copyTo(result.frame.depth(instance.box), metres > 0);
-		const uint32_t hash = (instance.label() + 1) * 2654435761u;
-		const cv::Scalar color(
-			64 + (hash >> 8) % 160, 64 + (hash >> 16) % 160, 64 + (hash >> 24) % 160);
-		result.frame.color(instance.box).setTo(color, instance.mask.decode(instance.box));
-		result.instances.push_back(instance);
-	}
-	return result;
-}
-
-/** Checked, rectified, and with a frame. */
-CroppedFrame prepared(const CObservationInstances& observation)
-{
-	observation.validate();
-	if (!hasDistortion(observation.camera)) return frameFromCrops(observation);
-	return frameFromCrops(*Rectifier().rectify(observation));
-}
 
 /** L of Eq. (3): a row for each predicted object, a column for each detection. */
 CostMatrix costMatrix(
 	const CObjectMap& map, const std::vector<PredictedObject>& predicted,
-	const CroppedFrame& cropped)
+	const SegmentedFrame& segmented)
 {
-	std::vector<AssociationItem> detections(cropped.instances.size());
+	std::vector<AssociationItem> detections(segmented.instances.size());
 	std::vector<std::vector<std::vector<float>>> embeddings(detections.size());
 	for (std::size_t k = 0; k < detections.size(); ++k)
 	{
-		const Instance& instance = cropped.instances[k];
+		const Instance& instance = segmented.instances[k];
 		if (!instance.embedding.empty()) embeddings[k] = {instance.embedding};
 		detections[k].mask = &instance.mask;
 		detections[k].labelScores = &instance.labelScores;
 		detections[k].embeddings = &embeddings[k];
 		detections[k].surface =
-			MaskedSurface(instance.mask, cropped.frame.depth, cropped.frame.camera).extent();
+			MaskedSurface(instance.mask, segmented.frame.depth, segmented.frame.camera).extent();
 	}
 	SemanticMatchingCost cost;
-	cost.setConfusionMatrix(ConfusionMatrix(map.labels(), kCorrectLabels));
-	return matchingCosts(cost, map.landmarks(predicted, cropped.frame.camera), detections);
+	cost.setConfusionMatrix(mapConfusion(map.labels()));
+	return matchingCosts(cost, map.landmarks(predicted, segmented.frame.camera), detections);
+}
+
+bool hasCrops(const CObservationInstances& observation)
+{
+	return std::any_of(
+		observation.instances.begin(), observation.instances.end(),
+		[](const Instance& instance) { return instance.depth.has_value(); });
 }
 }  // namespace
+
+bool UnpairedObservations::isPair() const
+{
+	return scan && instances && scan->timestamp == instances->timestamp;
+}
 
 bool CObjectMap::internal_insertObservation(
 	const mrpt::obs::CObservation& observation, const std::optional<const CPose3D>& robotPose)
 {
-	const auto* instances = dynamic_cast<const CObservationInstances*>(&observation);
-	if (!instances) return false;
-	if (objects_.empty()) labels_ = instances->labels;
-	if (!(labels_ == instances->labels))
+	const auto* const instances = dynamic_cast<const CObservationInstances*>(&observation);
+	if (instances && hasCrops(*instances))
+	{
+		SegmentedFrame segmented = SegmentedFrame::fromCrops(*instances);
+		auto& all = segmented.instances;
+		all.erase(
+			std::remove_if(all.begin(), all.end(), [](const Instance& i) { return !i.depth; }),
+			all.end());
+		return insert(segmented, instances->labels, robotPose.value_or(CPose3D()));
+	}
+	if (instances) unpaired_.instances = std::make_shared<CObservationInstances>(*instances);
+	if (const auto* const scan = dynamic_cast<const CObservation3DRangeScan*>(&observation))
+		unpaired_.scan = std::make_shared<CObservation3DRangeScan>(*scan);
+	if (!unpaired_.isPair()) return false;
+	const UnpairedObservations pair = std::exchange(unpaired_, {});
+	return insert(
+		SegmentedFrame::fromScan(*pair.scan, *pair.instances), pair.instances->labels,
+		robotPose.value_or(CPose3D()));
+}
+
+bool CObjectMap::insert(
+	const SegmentedFrame& segmented, const LabelSet& labels, const CPose3D& T_world_robot)
+{
+	if (objects_.empty()) labels_ = labels;
+	if (!(labels_ == labels))
 		throw InputError(
-			"instances of " + std::to_string(instances->labels.size()) +
+			"instances of " + std::to_string(labels.size()) +
 			" labels for a map with another set of " + std::to_string(labels_.size()) +
 			": use the same segmentation network for the whole map");
-	const CroppedFrame cropped = prepared(*instances);
-	if (cropped.instances.empty()) return false;
 
-	const CPose3D T_world_camera = robotPose.value_or(CPose3D()) + cropped.frame.T_robot_camera;
-	const auto predicted = predict(cropped.frame.camera, T_world_camera, cropped.frame.depth);
+	const CPose3D T_world_camera = T_world_robot + segmented.frame.T_robot_camera;
+	const auto predicted = predict(segmented.frame.camera, T_world_camera, segmented.frame.depth);
 	const auto assignment =
-		solveAssignment(costMatrix(*this, predicted, cropped), insertionOptions.gate);
+		solveAssignment(costMatrix(*this, predicted, segmented), insertionOptions.gate);
 
 	std::set<ObjectId> seen;
-	std::vector<bool> isMatched(cropped.instances.size(), false);
+	std::vector<bool> isMatched(segmented.instances.size(), false);
 	for (const auto& [row, column] : assignment.matches)
 	{
 		isMatched[column] = true;
 		const ObjectId id = predicted[row].id;
-		if (fuse(id, cropped.frame, cropped.instances[column], T_world_camera)) seen.insert(id);
+		if (fuse(id, segmented.frame, segmented.instances[column], T_world_camera)) seen.insert(id);
 	}
-	for (std::size_t k = 0; k < cropped.instances.size(); ++k)
+	for (std::size_t k = 0; k < segmented.instances.size(); ++k)
 		if (!isMatched[k])
-			if (const auto id = addObject(cropped.frame, cropped.instances[k], T_world_camera))
+			if (const auto id = addObject(segmented.frame, segmented.instances[k], T_world_camera))
 				seen.insert(*id);
 	markCovisible(seen);
-	updateExistence(predicted, cropped.frame, seen);
-	removeUnsupported();
-	return !seen.empty();
+	updateExistence(predicted, segmented.frame, seen);
+	const bool removed = !removeUnsupported().empty();
+	return removed || !seen.empty();
 }
 
 double CObjectMap::internal_computeObservationLikelihood(
 	const mrpt::obs::CObservation& observation, const CPose3D& takenFrom) const
 {
 	const auto* instances = dynamic_cast<const CObservationInstances*>(&observation);
-	if (!instances || (!objects_.empty() && !(labels_ == instances->labels))) return 0;
-	const CroppedFrame cropped = prepared(*instances);
-	const CPose3D T_world_camera = takenFrom + cropped.frame.T_robot_camera;
-	const auto predicted = predict(cropped.frame.camera, T_world_camera, cropped.frame.depth);
-	const CostMatrix cost = costMatrix(*this, predicted, cropped);
-	double logLikelihood = 0;
-	for (Eigen::Index k = 0; k < Eigen::Index(cropped.instances.size()); ++k)
-	{
-		const double best = cost.rows() > 0 ? 1 - cost.col(k).minCoeff() : 0;
-		logLikelihood += std::log(kUnexplained + (1 - kUnexplained) * std::clamp(best, 0.0, 1.0));
-	}
-	return logLikelihood;
+	if (!instances) return 0;
+	return likelihood_.of(*this, *instances)->log(takenFrom);
 }
 
 bool CObjectMap::internal_canComputeObservationLikelihood(

@@ -59,6 +59,31 @@ std::string readText(CArchive& in)
 }
 
 /** By key, so that options may come and go. */
+/** Options of a map are numbers and flags; they are written as double. */
+struct NumberOf
+{
+	template <class Value>
+	double operator()(const Value* value) const
+	{
+		if constexpr (std::is_arithmetic_v<Value>) return double(*value);
+		throw std::logic_error("an option of a map that is no number");
+	}
+};
+
+struct SetNumber
+{
+	double number;
+
+	template <class Value>
+	void operator()(Value* value) const
+	{
+		if constexpr (std::is_same_v<Value, bool>)
+			*value = number != 0;
+		else if constexpr (std::is_arithmetic_v<Value>)
+			*value = Value(number);
+	}
+};
+
 void writeOptions(CArchive& out, const Options& options)
 {
 	const auto fields = options.fields();
@@ -66,10 +91,7 @@ void writeOptions(CArchive& out, const Options& options)
 	for (const auto& field : fields)
 	{
 		writeText(out, field.key);
-		if (auto number = std::get_if<double*>(&field.target))
-			out << **number;
-		else
-			out << double(*std::get<int*>(field.target));
+		out << std::visit(NumberOf(), field.target);
 	}
 }
 
@@ -86,10 +108,7 @@ void readOptions(CArchive& in, Options& options)
 			if (field.key != key) continue;
 			if (!(value >= field.minimum && value <= field.maximum))
 				damaged(key + " = " + std::to_string(value) + " is out of range");
-			if (auto number = std::get_if<double*>(&field.target))
-				**number = value;
-			else
-				*std::get<int*>(field.target) = int(value);
+			std::visit(SetNumber{value}, field.target);
 		}
 	}
 }
@@ -202,7 +221,7 @@ Object readObject(CArchive& in, std::size_t labels)
 
 uint8_t CObjectMap::serializeGetVersion() const
 {
-	return 0;
+	return 1;  // 1: options of likelihood and visualization
 }
 
 void CObjectMap::serializeTo(CArchive& out) const
@@ -211,6 +230,8 @@ void CObjectMap::serializeTo(CArchive& out) const
 		<< genericMapParams.enableObservationInsertion;
 	writeOptions(out, insertionOptions);
 	writeOptions(out, maintenanceOptions);
+	writeOptions(out, likelihoodOptions);
+	writeOptions(out, visualizationOptions);
 	out << uint32_t(labels_.size());
 	for (const auto& name : labels_.names()) writeText(out, name);
 	out << nextId_ << uint32_t(objects_.size());
@@ -219,13 +240,18 @@ void CObjectMap::serializeTo(CArchive& out) const
 
 void CObjectMap::serializeFrom(CArchive& in, uint8_t version)
 {
-	if (version != 0) MRPT_THROW_UNKNOWN_SERIALIZATION_VERSION(version);
+	if (version > 1) MRPT_THROW_UNKNOWN_SERIALIZATION_VERSION(version);
 	CObjectMap map;  // so that nothing is half read when this throws
 	map.genericMapParams.enableSaveAs3DObject = readNumber<uint8_t>(in) != 0;
 	map.genericMapParams.enableObservationLikelihood = readNumber<uint8_t>(in) != 0;
 	map.genericMapParams.enableObservationInsertion = readNumber<uint8_t>(in) != 0;
 	readOptions(in, map.insertionOptions);
 	readOptions(in, map.maintenanceOptions);
+	if (version >= 1)
+	{
+		readOptions(in, map.likelihoodOptions);
+		readOptions(in, map.visualizationOptions);
+	}
 	std::vector<std::string> labels(readCount(in, kMostLabels, "labels"));
 	for (auto& label : labels) label = readText(in);
 	map.labels_ = LabelSet(std::move(labels));

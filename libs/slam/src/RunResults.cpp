@@ -5,8 +5,8 @@
 #include <mrpt/opengl/stock_objects.h>
 #include <mrpt/poses/CPose3DPDFGaussian.h>
 #include <semloop/config/Error.h>
-#include <semloop/loop_closure/SemanticGraph.h>
 #include <semloop/object_map/ObjectFiles.h>
+#include <semloop/object_map/SemanticGraph.h>
 #include <semloop/observations/CameraFrames.h>
 #include <semloop/pose_graph/G2oFile.h>
 #include <semloop/slam/RunResults.h>

@@ -77,6 +77,11 @@ private:
 	std::optional<ConfusionMatrix> confusion_;
 };
 
+/** p(l_k | l_j) of two label distributions, each scaled to a sum of 1: what is left to "anything else" says
+ *  nothing about their agreement. In [0, 1]. Throws InputError when a label is not in the matrix. */
+double labelAgreement(
+	const ConfusionMatrix& confusion, const LabelScores& observed, const LabelScores& truth);
+
 /** max over e in set, f in other of e . f; none when either side has no embedding. Throws InputError
  *  when their sizes differ. */
 std::optional<double> embeddingSimilarity(

@@ -2,7 +2,7 @@
 
 #include <mrpt/poses/CPose3D.h>
 #include <semloop/evaluation/TrajectoryError.h>
-#include <semloop/loop_closure/SemanticGraph.h>
+#include <semloop/object_map/SemanticGraph.h>
 
 #include <cstddef>
 #include <optional>

@@ -2,7 +2,7 @@
 
 #include <mrpt/config/CConfigFileBase.h>
 #include <mrpt/rtti/CObject.h>
-#include <semloop/loop_closure/SemanticGraph.h>
+#include <semloop/object_map/SemanticGraph.h>
 
 #include <string>
 #include <vector>

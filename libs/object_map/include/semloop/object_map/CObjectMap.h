@@ -1,9 +1,13 @@
 #pragma once
 
 #include <mrpt/maps/CMetricMap.h>
+#include <mrpt/obs/CObservation3DRangeScan.h>
 #include <semloop/association/MatchingCost.h>
 #include <semloop/config/Options.h>
+#include <semloop/object_map/LikelihoodCache.h>
 #include <semloop/object_map/Object.h>
+#include <semloop/object_map/ObservationLikelihood.h>
+#include <semloop/object_map/SurfacePoints.h>
 #include <semloop/observations/CObservationInstances.h>
 
 #include <map>
@@ -45,6 +49,31 @@ protected:
 	void describe(OptionFields& fields) override;
 };
 
+/** What of a map is drawn. */
+struct ObjectMapVisualizationOptions : Options
+{
+	bool meshes = true;  //!< the objects' surfaces
+	bool boxes = true;   //!< round the surfaces
+	bool names = true;   //!< label and id
+	bool edges = true;   //!< lines between objects that were seen together
+
+protected:
+	void describe(OptionFields& fields) override;
+};
+
+struct SegmentedFrame;
+
+/** A range scan and instances that wait for each other. */
+struct UnpairedObservations
+{
+	// Shared, for particle filters copy the map.
+	std::shared_ptr<const mrpt::obs::CObservation3DRangeScan> scan;
+	std::shared_ptr<const CObservationInstances> instances;
+
+	/** Of one time. */
+	bool isPair() const;
+};
+
 /** What the map expects to see from a camera. */
 struct PredictedObject
 {
@@ -70,6 +99,8 @@ public:
 
 	ObjectMapInsertionOptions insertionOptions;
 	ObjectMapMaintenanceOptions maintenanceOptions;
+	ObjectMapLikelihoodOptions likelihoodOptions;
+	ObjectMapVisualizationOptions visualizationOptions;
 
 	/** @name Objects
 	 * @{ */
@@ -136,18 +167,40 @@ public:
 	/** @} */
 
 	/** @name mrpt::maps::CMetricMap
-	 * insertObservation() takes CObservationInstances with depth crops, alone or in a CSensoryFrame:
-	 * it associates them with predict() by Eq. (1)-(3), p(l_k | l_j) being ConfusionMatrix(labels(), 0.8)
-	 * as no configuration of a run reaches it, fuses, adds and removes. The likelihood of
-	 * such an observation is sum over detections k of log(q + (1 - q) max over j of (1 - L(j,k))), q =
-	 * 0.1 being the share of detections that the map cannot explain.
+	 * insertObservation() takes CObservationInstances with depth crops; or without, and the
+	 * CObservation3DRangeScan of the same time, in any order, as a CSensoryFrame holds them: then the second of
+	 * the two changes the map. It associates them with predict() by Eq. (1)-(3), p(l_k | l_j) being ConfusionMatrix(labels(), 0.8)
+	 * as no configuration of a run reaches it, fuses, adds and removes. The likelihood of such an
+	 * observation, with depth crops or without, is ObservationLikelihood's; what does not depend on the pose
+	 * is kept until another observation, or a changed map, is asked for.
 	 * @{ */
 	bool isEmpty() const override { return objects_.empty(); }
-	/** Writes <prefix>.3Dscene, <prefix>.objmap and <prefix>_objects/<id>_<label>.ply; throws InputError. */
+	/** Writes <prefix>.3Dscene, <prefix>.objmap, <prefix>.json (semloop.graph/1) and
+	 *  <prefix>_objects/<id>_<label>.ply; throws InputError. */
 	void saveMetricMapRepresentationToFile(const std::string& filePrefix) const override;
-	/** Meshes, boxes and names of the objects, and lines for the co-visible pairs. */
+	/** Meshes, boxes and names of the objects, and lines for the co-visible pairs: what
+	 *  visualizationOptions has; nothing without genericMapParams.enableSaveAs3DObject. */
 	void getVisualizationInto(mrpt::opengl::CSetOfObjects& out) const override;
 	std::string asString() const override;
+
+	/** The objects' surfaces in the world, one point a cell of 2 cm; stays until the map has changed and
+	 *  it is asked for again. Never null. */
+	const mrpt::maps::CSimplePointsMap* getAsSimplePointsMap() const override;
+	/** As CPointsMap has them, between these points and those of the other map: a point map, or one that
+	 *  has getAsSimplePointsMap(). Throw InputError for other maps. */
+	void determineMatching2D(
+		const mrpt::maps::CMetricMap* otherMap, const mrpt::poses::CPose2D& otherMapPose,
+		mrpt::tfest::TMatchingPairList& correspondences, const mrpt::maps::TMatchingParams& params,
+		mrpt::maps::TMatchingExtraResults& extraResults) const override;
+	void determineMatching3D(
+		const mrpt::maps::CMetricMap* otherMap, const mrpt::poses::CPose3D& otherMapPose,
+		mrpt::tfest::TMatchingPairList& correspondences, const mrpt::maps::TMatchingParams& params,
+		mrpt::maps::TMatchingExtraResults& extraResults) const override;
+	float compute3DMatchingRatio(
+		const mrpt::maps::CMetricMap* otherMap, const mrpt::poses::CPose3D& otherMapPose,
+		const mrpt::maps::TMatchingRatioParams& params) const override;
+	/** Of the nearest surface point, seen from above [m^2]. */
+	float squareDistanceToClosestCorrespondence(float x0, float y0) const override;
 	/** @} */
 
 protected:
@@ -165,14 +218,22 @@ protected:
 private:
 	TsdfVolume& writableVolume(Object& object);
 	void requireUsable(const RgbdFrame& frame, const Instance& instance) const;
+	bool insert(
+		const SegmentedFrame& segmented, const LabelSet& labels,
+		const mrpt::poses::CPose3D& T_world_robot);
 
 	std::map<ObjectId, Object> objects_;
 	LabelSet labels_;
 	ObjectId nextId_ = 0;
+	UnpairedObservations unpaired_;
+	LikelihoodCache likelihood_;
+	SurfacePoints surfacePoints_;
 
 	MAP_DEFINITION_START(CObjectMap)
 	semloop::ObjectMapInsertionOptions insertOpts;
 	semloop::ObjectMapMaintenanceOptions maintenanceOpts;
+	semloop::ObjectMapLikelihoodOptions likelihoodOpts;
+	semloop::ObjectMapVisualizationOptions visualizationOpts;
 	MAP_DEFINITION_END(CObjectMap)
 };
 

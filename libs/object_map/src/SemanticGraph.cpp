@@ -1,4 +1,4 @@
-#include <semloop/loop_closure/SemanticGraph.h>
+#include <semloop/object_map/SemanticGraph.h>
 
 #include <algorithm>
 

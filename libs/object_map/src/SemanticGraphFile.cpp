@@ -1,5 +1,5 @@
 #include <semloop/config/Error.h>
-#include <semloop/loop_closure/SemanticGraph.h>
+#include <semloop/object_map/SemanticGraph.h>
 
 #include <cmath>
 #include <fstream>

@@ -1,12 +1,12 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <semloop/config/Error.h>
-#include <semloop/loop_closure/SemanticGraph.h>
+#include <semloop/object_map/SemanticGraph.h>
 
 #include <cmath>
 #include <limits>
 
-#include "GraphFixtures.h"
+#include "GraphExamples.h"
 #include "SyntheticScene.h"
 #include "TemporaryFolder.h"
 
