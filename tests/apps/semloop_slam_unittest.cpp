@@ -1,4 +1,9 @@
+#include <mrpt/maps/CSimpleMap.h>
+#include <mrpt/obs/CSensoryFrame.h>
+#include <semloop/observations/ExternalImages.h>
+
 #include <filesystem>
+#include <opencv2/core.hpp>
 #include <sstream>
 
 #include "SemloopSlamFixture.h"
@@ -44,6 +49,37 @@ TEST_F(SemloopSlam, EveryFileKeyAndStageOfTheResultsIsInTheManual)
 	std::getline(stages, line);
 	expectExplained(line);
 	while (std::getline(stages, line)) expectExplained(line.substr(0, line.find(',')));
+}
+
+TEST_F(SemloopSlam, TheSimpleMapHasItsImagesInside)
+{
+	const std::filesystem::path images = folder_.path() / "changed_Images";
+	std::filesystem::create_directories(images);
+	const RecordedRun recorded = recordShortRun();
+	cv::Mat first;
+	const RecordedRun external = changed(
+		recorded,
+		[&](int index, mrpt::obs::CObservation3DRangeScan& scan)
+		{
+			if (index == 0) first = scan.intensityImage.asCvMat<cv::Mat>(mrpt::img::DEEP_COPY);
+			const std::string name = std::to_string(index) + ".png";
+			ASSERT_TRUE(scan.intensityImage.saveToFile((images / name).string()));
+			scan.intensityImage.setExternalStorage(name);
+			storeDepthExternally(scan, images.string(), std::to_string(index) + ".bin");
+		});
+	ASSERT_EQ(run(arguments(external, recorded.rawlog)), 0) << messages();
+	std::filesystem::remove_all(images);
+
+	mrpt::maps::CSimpleMap map;
+	ASSERT_TRUE(map.loadFromFile(folder_.file("result/map.simplemap")));
+	ASSERT_GT(map.size(), 0u);
+	mrpt::poses::CPose3DPDF::Ptr pose;
+	mrpt::obs::CSensoryFrame::Ptr frame;
+	map.get(0, pose, frame);
+	const auto scan = frame->getObservationByClass<mrpt::obs::CObservation3DRangeScan>();
+	ASSERT_TRUE(scan);
+	EXPECT_FALSE(scan->rangeImage_isExternallyStored());
+	EXPECT_EQ(cv::norm(scan->intensityImage.asCvMatRef(), first, cv::NORM_INF), 0);
 }
 
 TEST_F(SemloopSlam, StopsAfterMaxFrames)

@@ -8,6 +8,7 @@
 #include <semloop/object_map/ObjectFiles.h>
 #include <semloop/object_map/SemanticGraph.h>
 #include <semloop/observations/CameraFrames.h>
+#include <semloop/observations/ExternalImages.h>
 #include <semloop/pose_graph/G2oFile.h>
 #include <semloop/slam/RunResults.h>
 #include <sys/resource.h>
@@ -16,6 +17,7 @@
 #include <filesystem>
 #include <fstream>
 #include <nlohmann/json.hpp>
+#include <opencv2/imgcodecs.hpp>
 
 namespace fs = std::filesystem;
 
@@ -48,6 +50,22 @@ void writeMeshes(const fs::path& folder, const SemanticSlam& slam)
 	}
 }
 
+/** So that a file with it can be moved without the rawlog's folder of images. */
+mrpt::obs::CObservation3DRangeScan::Ptr withImagesInside(
+	const mrpt::obs::CObservation3DRangeScan& original)
+{
+	const auto scan = mrpt::obs::CObservation3DRangeScan::Create(original);
+	scan->load();
+	scan->rangeImage_forceResetExternalStorage();
+	// A loaded image still is an external one: only a new one is written with its pixels.
+	if (scan->hasIntensityImage && scan->intensityImage.isExternallyStored())
+		scan->intensityImage = mrpt::img::CImage(
+			readImageFile(
+				scan->intensityImage.getExternalStorageFileAbsolutePath(), cv::IMREAD_UNCHANGED),
+			mrpt::img::DEEP_COPY);
+	return scan;
+}
+
 /** Robot poses and observations, for observations2map and friends. */
 void writeSimpleMap(const fs::path& path, const SemanticSlam& slam)
 {
@@ -55,12 +73,7 @@ void writeSimpleMap(const fs::path& path, const SemanticSlam& slam)
 	for (const auto& key : slam.keyFrames())
 	{
 		auto frame = mrpt::obs::CSensoryFrame::Create();
-		// Loaded, so that the file can be moved without the rawlog's image folder.
-		const auto scan = mrpt::obs::CObservation3DRangeScan::Create(*key.scan);
-		scan->load();
-		scan->rangeImage_forceResetExternalStorage();
-		if (scan->hasIntensityImage) scan->intensityImage.forceLoad();
-		frame->insert(scan);
+		frame->insert(withImagesInside(*key.scan));
 		frame->insert(key.instances);
 		const auto pose = mrpt::poses::CPose3DPDFGaussian::Create();
 		pose->mean = slam.poseGraph().pose(NodeId::camera(key.frame)) +
