@@ -1,6 +1,7 @@
 #include "Application.h"
 
 #include <semloop/config/Error.h>
+#include <semloop/config/ExceptionMessage.h>
 
 #include <filesystem>
 #include <fstream>
@@ -10,21 +11,6 @@ namespace semloop
 {
 namespace
 {
-std::string firstLine(const std::string& text)
-{
-	return text.substr(0, text.find('\n'));
-}
-
-/** MRPT's exceptions have a banner, "Message: ..." and a call stack. */
-std::string messageOf(const std::exception& e)
-{
-	const std::string text = e.what(), mark = "Message:";
-	const auto message = text.find(mark);
-	if (message == std::string::npos) return firstLine(text);
-	const auto begin = text.find_first_not_of(' ', message + mark.size());
-	return begin == std::string::npos ? firstLine(text) : firstLine(text.substr(begin));
-}
-
 /** TCLAP prints a wrong call over many lines and goes on: we want one line, and out. */
 class ThrowingOutput : public TCLAP::StdOutput
 {
@@ -58,7 +44,7 @@ int runApplication(const std::string& name, const std::function<int()>& body)
 	}
 	catch (const std::exception& e)
 	{
-		std::cerr << name << ": " << messageOf(e) << "\n";
+		std::cerr << name << ": " << exceptionMessage(e) << "\n";
 		return kFailed;
 	}
 }

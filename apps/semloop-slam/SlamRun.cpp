@@ -2,7 +2,9 @@
 
 #include <mrpt/config/CConfigFile.h>
 #include <semloop/config/Error.h>
+#include <semloop/config/ExceptionMessage.h>
 #include <semloop/slam/Configuration.h>
+#include <semloop/slam/OtherMaps.h>
 #include <semloop/slam/RunResults.h>
 
 #include <chrono>
@@ -114,8 +116,7 @@ std::string processAll(FrameSource& source, std::size_t maxFrames, Progress prog
 		}
 		catch (const std::exception& e)
 		{
-			const std::string what = e.what();
-			return progress.info.endedBy = what.substr(0, what.find('\n'));
+			return progress.info.endedBy = exceptionMessage(e);
 		}
 	}
 	progress.info.endedBy = kCtrlC;
@@ -152,6 +153,7 @@ int runSlam(const SlamRunArguments& arguments)
 	ConsoleLogger logger(bar);
 	StageTimings timings;
 	FrontEnd frontEnd = makeFrontEnd(config);
+	const OtherMaps otherMaps(config);
 	SemanticSlam slam(config, logger, timings);
 	RunInfo info;
 	info.rawlog = arguments.rawlog;
@@ -167,6 +169,7 @@ int runSlam(const SlamRunArguments& arguments)
 	info.wallSeconds =
 		std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
 	writeRunResults(arguments.output, slam, info, timings);
+	writeOtherMaps(arguments.output + "/maps", otherMaps.names(), *otherMaps.build(slam));
 	printSummary(arguments, slam, info);
 	if (failure.empty() && slam.frameCount() > 0 && slam.segmentedFrameCount() == 0)
 		std::cerr

@@ -10,6 +10,7 @@
 #include <semloop/observations/RawlogWriter.h>
 #include <semloop/observations/UnixTime.h>
 
+#include <algorithm>
 #include <filesystem>
 #include <nlohmann/json.hpp>
 #include <optional>
@@ -40,6 +41,15 @@ bool isSidecarHeader(const Object& object)
 	return format.is_string() && format.get<std::string>().rfind("semloop.instances/", 0) == 0;
 }
 
+bool isFrameWithInstances(const Object& object)
+{
+	const auto* const frame = dynamic_cast<const mrpt::obs::CSensoryFrame*>(&object);
+	return frame &&
+		   std::any_of(
+			   frame->begin(), frame->end(),
+			   [](const auto& observation) { return asInstances(*observation) != nullptr; });
+}
+
 std::vector<Time> scanTimes(const Object& object)
 {
 	std::vector<Time> times;
@@ -59,7 +69,7 @@ std::optional<RawlogObject> nextOf(RawlogReader& reader, std::string& damage)
 	{
 		return reader.nextObject();
 	}
-	catch (const InputError& e)
+	catch (const DamagedRawlogError& e)
 	{
 		if (damage.empty()) damage = e.what();
 		return std::nullopt;
@@ -142,14 +152,25 @@ MergeReport mergeInstances(const MergeFiles& files, bool leaveOut, const MergePr
 	RawlogReader reader(files.rawlog);
 	SidecarCursor sidecar(files.instances, report.damage);
 	RawlogWriter writer(files.merged);
+	std::optional<Time> last;
 	while (const auto next = nextOf(reader, report.damage))
 	{
 		if (asInstances(*next->object))
 			throw InputError(files.rawlog + ": has instances already; --split takes them out");
+		if (isFrameWithInstances(*next->object))
+			throw InputError(files.rawlog + ": has instances already, in its sensory frames");
+		// What is left of a sidecar whose instances were removed would come out of a split.
+		if (isSidecarHeader(*next->object)) continue;
 		writer.writeBytes(next->bytes);
 		report.objects++;
 		for (const auto& time : scanTimes(*next->object))
 		{
+			if (last && time < *last)
+				throw InputError(
+					files.rawlog + ": the range scan of " + formatUnixTime(time) +
+					" s comes behind one of " + formatUnixTime(*last) +
+					" s; merging needs them in order of time");
+			last = time;
 			passOver(sidecar, time, leaveOut, files, report);
 			if (sidecar.time() != time) continue;
 			sidecar.writeTo(writer);
@@ -172,6 +193,11 @@ MergeReport splitInstances(const MergeFiles& files, const MergeProgress& progres
 	RawlogWriter rawlog(files.rawlog), instances(files.instances);
 	while (const auto next = nextOf(reader, report.damage))
 	{
+		if (isFrameWithInstances(*next->object))
+			throw InputError(
+				files.merged +
+				": has instances in sensory frames; --split takes out those that "
+				"rawlog-merge-instances put in");
 		const bool isInstances = asInstances(*next->object) != nullptr;
 		const bool isOfSidecar = isInstances || isSidecarHeader(*next->object);
 		(isOfSidecar ? instances : rawlog).writeBytes(next->bytes);
@@ -179,16 +205,37 @@ MergeReport splitInstances(const MergeFiles& files, const MergeProgress& progres
 		report.objects += !isOfSidecar;
 		progress(report.objects, reader.progress());
 	}
+	if (report.instances == 0 && report.damage.empty())
+		throw InputError(files.merged + ": has no instances that could be taken out");
 	rawlog.close();
 	instances.close();
 	return report;
+}
+
+void requireFreeImagesFolder(const std::string& from, const std::string& to, bool force)
+{
+	const fs::path folder = externalImagesFolder(from), link = externalImagesFolder(to);
+	std::error_code error;
+	if (!fs::is_directory(folder, error) || fs::equivalent(folder, link, error)) return;
+	const auto there = fs::symlink_status(link, error);
+	if (!fs::exists(there)) return;
+	if (!fs::is_symlink(there))
+		throw InputError(
+			link.string() + ": is there already and not " + folder.string() +
+			", where the images of " + to + " will be; name another output or move it away");
+	if (!force)
+		throw InputError(
+			link.string() +
+			": is a link to other images already; name another output or add "
+			"--force");
 }
 
 void linkExternalImages(const std::string& from, const std::string& to)
 {
 	const fs::path folder = externalImagesFolder(from), link = externalImagesFolder(to);
 	std::error_code error;
-	if (!fs::is_directory(folder, error) || fs::exists(fs::symlink_status(link, error))) return;
+	if (!fs::is_directory(folder, error) || fs::equivalent(folder, link, error)) return;
+	if (fs::is_symlink(link, error)) fs::remove(link, error);
 	const auto parent = fs::absolute(link).parent_path();
 	fs::create_directory_symlink(fs::relative(folder, parent), link, error);
 	if (error)

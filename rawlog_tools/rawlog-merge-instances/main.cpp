@@ -66,10 +66,22 @@ bool parse(int argc, char** argv, Arguments& arguments)
 	return true;
 }
 
-void requireNotThere(const std::string& path, bool force)
+/** Also of files that are not there yet. */
+bool isSameFile(const std::string& a, const std::string& b)
 {
-	if (!force && std::filesystem::exists(path))
-		throw InputError(path + ": is there already; name another or add --force");
+	std::error_code error;
+	if (std::filesystem::equivalent(a, b, error)) return true;
+	const auto full = [](const std::string& path)
+	{ return std::filesystem::weakly_canonical(std::filesystem::absolute(path)); };
+	return full(a) == full(b);
+}
+
+/** Neither there nor half there: rawlog-segment goes on from what is in such a file. */
+void requireFree(const std::string& output, bool force)
+{
+	for (const auto& path : {output, RawlogWriter::partialPath(output)})
+		if (!force && std::filesystem::exists(path))
+			throw InputError(path + ": is there already; name another or add --force");
 }
 
 void requireUsableFiles(const Arguments& arguments)
@@ -77,19 +89,16 @@ void requireUsableFiles(const Arguments& arguments)
 	const auto& files = arguments.files;
 	requireFile(arguments.input(), "correct the path");
 	for (const auto* const path : {&files.rawlog, &files.merged})
-	{
-		std::error_code error;
-		if (std::filesystem::equivalent(*path, files.instances, error))
+		if (isSameFile(*path, files.instances))
 			throw UsageError(files.instances + ": cannot be rawlog and sidecar at once");
-	}
-	std::error_code error;
-	if (std::filesystem::equivalent(files.rawlog, files.merged, error))
+	if (isSameFile(files.rawlog, files.merged))
 		throw UsageError(files.merged + ": cannot be read and written at once");
-	requireNotThere(arguments.output(), arguments.force);
+	requireFree(arguments.output(), arguments.force);
 	if (arguments.split)
-		requireNotThere(files.instances, arguments.force);
+		requireFree(files.instances, arguments.force);
 	else
 		requireFile(files.instances, "rawlog-segment makes it, --instances names another");
+	requireFreeImagesFolder(arguments.input(), arguments.output(), arguments.force);
 }
 
 /** Leaves nothing half written behind when the input is refused. */

@@ -2,11 +2,14 @@
 
 #include <mrpt/obs/CObservation3DRangeScan.h>
 #include <mrpt/obs/CObservationImage.h>
+#include <mrpt/obs/CObservationStereoImages.h>
 #include <semloop/observations/CObservationInstances.h>
+#include <semloop/observations/ExternalImages.h>
 #include <semloop/observations/RgbdFrame.h>
 
 #include <algorithm>
 #include <filesystem>
+#include <opencv2/imgcodecs.hpp>
 #include <sstream>
 
 namespace semloop
@@ -55,13 +58,37 @@ std::string formOf(const CObservation3DRangeScan& scan)
 	return form.str();
 }
 
-std::vector<std::string> externalFilesOf(const CObservation3DRangeScan& scan)
+std::vector<const mrpt::img::CImage*> imagesOf(const mrpt::obs::CObservation& observation)
+{
+	std::vector<const mrpt::img::CImage*> images;
+	if (const auto* const scan = dynamic_cast<const CObservation3DRangeScan*>(&observation))
+	{
+		if (scan->hasIntensityImage) images.push_back(&scan->intensityImage);
+		if (scan->hasConfidenceImage) images.push_back(&scan->confidenceImage);
+	}
+	else if (
+		const auto* const one = dynamic_cast<const mrpt::obs::CObservationImage*>(&observation))
+		images.push_back(&one->image);
+	else if (
+		const auto* const stereo =
+			dynamic_cast<const mrpt::obs::CObservationStereoImages*>(&observation))
+	{
+		images.push_back(&stereo->imageLeft);
+		if (stereo->hasImageRight) images.push_back(&stereo->imageRight);
+		if (stereo->hasImageDisparity) images.push_back(&stereo->imageDisparity);
+	}
+	return images;
+}
+
+std::vector<std::string> externalFilesOf(const mrpt::obs::CObservation& observation)
 {
 	std::vector<std::string> files;
-	if (scan.hasIntensityImage && scan.intensityImage.isExternallyStored())
-		files.push_back(scan.intensityImage.getExternalStorageFileAbsolutePath());
-	if (scan.hasRangeImage && scan.rangeImage_isExternallyStored())
-		files.push_back(scan.rangeImage_getExternalStorageFileAbsolutePath(""));
+	for (const auto* const image : imagesOf(observation))
+		if (image->isExternallyStored())
+			files.push_back(image->getExternalStorageFileAbsolutePath());
+	const auto* const scan = dynamic_cast<const CObservation3DRangeScan*>(&observation);
+	if (scan && scan->hasRangeImage && scan->rangeImage_isExternallyStored())
+		files.push_back(scan->rangeImage_getExternalStorageFileAbsolutePath(""));
 	return files;
 }
 
@@ -96,20 +123,12 @@ std::size_t Stream::outOfOrder() const
 void Contents::add(const mrpt::obs::CObservation& observation)
 {
 	auto& stream = streams_[{observation.sensorLabel, observation.GetRuntimeClass()->className}];
+	stream.observations++;
 	if (observation.timestamp != INVALID_TIMESTAMP) stream.times.push_back(observation.timestamp);
-	std::vector<std::string> files;
 	if (const auto* const scan = dynamic_cast<const CObservation3DRangeScan*>(&observation))
-	{
 		stream.forms[formOf(*scan)]++;
-		files = externalFilesOf(*scan);
-	}
-	else if (
-		const auto* const image = dynamic_cast<const mrpt::obs::CObservationImage*>(&observation))
-	{
-		stream.forms[formOf(image->image, "image")]++;
-		if (image->image.isExternallyStored())
-			files.push_back(image->image.getExternalStorageFileAbsolutePath());
-	}
+	else if (const auto images = imagesOf(observation); !images.empty())
+		stream.forms[formOf(*images.front(), "image")]++;
 	else if (const auto* const found = dynamic_cast<const CObservationInstances*>(&observation))
 	{
 		const bool depth = std::any_of(
@@ -124,15 +143,22 @@ void Contents::add(const mrpt::obs::CObservation& observation)
 		for (const auto& instance : found->instances)
 			stream.instancesOfLabel[found->labels.name(instance.label())]++;
 	}
-	for (const auto& file : files)
+	for (const auto& file : externalFilesOf(observation))
 		if (!std::filesystem::exists(file)) missing_.push_back(file);
 	observations_++;
 }
 
 void Contents::checkImages(const mrpt::obs::CObservation& observation)
 {
-	if (const auto* const scan = dynamic_cast<const CObservation3DRangeScan*>(&observation))
+	const auto* const scan = dynamic_cast<const CObservation3DRangeScan*>(&observation);
+	if (scan && scan->hasIntensityImage && scan->hasRangeImage)
+	{
 		rgbdFrameFrom(*scan);
+		return;
+	}
+	for (const auto* const image : imagesOf(observation))
+		if (image->isExternallyStored())
+			readImageFile(image->getExternalStorageFileAbsolutePath(), cv::IMREAD_UNCHANGED);
 }
 
 }  // namespace semloop

@@ -15,7 +15,8 @@ namespace semloop
 /** The observations of one class and sensor label. */
 struct Stream
 {
-	std::vector<mrpt::Clock::time_point> times;  //!< in the file's order
+	std::size_t observations = 0;
+	std::vector<mrpt::Clock::time_point> times;  //!< in the file's order, of those that have one
 	std::map<std::string, std::size_t> forms;    //!< what its images are like, and how many
 	std::map<std::string, std::size_t> instancesOfLabel;
 

@@ -114,12 +114,11 @@ void print(const std::string& path, const Contents& contents)
 	std::printf("\n");
 	for (const auto& [key, stream] : contents.streams())
 	{
-		std::size_t count = 0;
-		for (const auto& [form, times] : stream.forms) count += times;
-		count = std::max(count, stream.times.size());
 		std::printf(
-			"  %s: %zu %s\n", key.first.empty() ? "(no label)" : key.first.c_str(), count,
-			key.second.c_str());
+			"  %s: %zu %s\n", key.first.empty() ? "(no label)" : key.first.c_str(),
+			stream.observations, key.second.c_str());
+		if (stream.times.size() < stream.observations)
+			std::printf("    %zu without a time\n", stream.observations - stream.times.size());
 		if (!stream.times.empty()) printTimes(stream, begin);
 		for (const auto& [form, times] : stream.forms)
 		{

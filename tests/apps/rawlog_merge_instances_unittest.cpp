@@ -163,6 +163,121 @@ TEST_F(RawlogMergeInstances, TheImagesAreFoundFromTheNewName)
 	EXPECT_EQ(readBytes(folder_.file("out_Images/color.jpg")), "an image");
 }
 
+TEST_F(RawlogMergeInstances, ImagesOfAnotherRecordingUnderTheNewNameAreNotTakenForIts)
+{
+	writeSidecar({1});
+	folder_.write("in_Images/color.jpg", "an image");
+	folder_.write("other_Images/color.jpg", "another image");
+	fs::create_directory_symlink("other_Images", folder_.path() / "out_Images");
+	const auto result = run("in.rawlog out.rawlog");
+	EXPECT_EQ(result.code, 1);
+	EXPECT_THAT(result.err, HasSubstr("out_Images: is a link to other images already"));
+	EXPECT_FALSE(fs::exists(folder_.path() / "out.rawlog"));
+	EXPECT_EQ(run("--force in.rawlog out.rawlog").code, 0);
+	EXPECT_EQ(readBytes(folder_.file("out_Images/color.jpg")), "an image");
+	EXPECT_EQ(readBytes(folder_.file("other_Images/color.jpg")), "another image");
+
+	const auto folder = run("--force in.rawlog other.rawlog");
+	EXPECT_EQ(folder.code, 1);
+	EXPECT_THAT(folder.err, HasSubstr("other_Images: is there already and not in_Images"));
+	EXPECT_EQ(readBytes(folder_.file("other_Images/color.jpg")), "another image");
+}
+
+TEST_F(RawlogMergeInstances, WhatAnInterruptedRunLeftIsNotReplacedUnasked)
+{
+	writeSidecar({1});
+	ASSERT_EQ(run("in.rawlog merged.rawlog").code, 0);
+	folder_.write("back_instances.rawlog.partial", "precious");
+	const auto result = run("--split merged.rawlog back.rawlog");
+	EXPECT_EQ(result.code, 1);
+	EXPECT_THAT(result.err, HasSubstr("back_instances.rawlog.partial: is there already"));
+	EXPECT_EQ(readBytes(folder_.file("back_instances.rawlog.partial")), "precious");
+}
+
+TEST_F(RawlogMergeInstances, TwoOutputsOfOneNameAreRefusedBeforeTheyExist)
+{
+	writeSidecar({1});
+	ASSERT_EQ(run("in.rawlog merged.rawlog").code, 0);
+	const auto result = run("--split merged.rawlog new.rawlog --instances ./new.rawlog");
+	EXPECT_EQ(result.code, 2);
+	EXPECT_THAT(result.err, HasSubstr("./new.rawlog: cannot be rawlog and sidecar at once"));
+}
+
+TEST_F(RawlogMergeInstances, WhatIsNoRawlogReplacesNothing)
+{
+	writeSidecar({1});
+	ASSERT_EQ(run("in.rawlog out.rawlog").code, 0);
+	const std::string good = readBytes(folder_.file("out.rawlog"));
+	folder_.write("text.rawlog", "hello");
+	for (const std::string arguments :
+		 {"in.rawlog out.rawlog --instances text.rawlog",
+		  "text.rawlog out.rawlog --instances in_instances.rawlog"})
+	{
+		const auto result = run("--force " + arguments);
+		EXPECT_EQ(result.code, 1);
+		EXPECT_THAT(result.err, HasSubstr("text.rawlog: object 0"));
+		EXPECT_EQ(readBytes(folder_.file("out.rawlog")), good);
+		EXPECT_FALSE(fs::exists(folder_.path() / "out.rawlog.partial"));
+	}
+}
+
+TEST_F(RawlogMergeInstances, ScansOutOfOrderAreRefusedAndNotDropped)
+{
+	RawlogWriter writer(folder_.file("in.rawlog"));
+	for (const double time : {1, 3, 2}) writer.write(*scanAt(time));
+	writer.close();
+	writeSidecar({1, 3});
+	const auto result = run("--leave-out in.rawlog out.rawlog");
+	EXPECT_EQ(result.code, 1);
+	EXPECT_THAT(result.err, HasSubstr("the range scan of 2.000000 s comes behind one of 3.000000"));
+}
+
+TEST_F(RawlogMergeInstances, WithoutInstancesThereIsNothingToSplit)
+{
+	const auto result = run("--split in.rawlog back.rawlog");
+	EXPECT_EQ(result.code, 1);
+	EXPECT_EQ(
+		result.err,
+		"rawlog-merge-instances: in.rawlog: has no instances that could be taken out\n");
+	for (const char* const left : {"back.rawlog", "back.rawlog.partial", "back_instances.rawlog"})
+		EXPECT_FALSE(fs::exists(folder_.path() / left)) << left;
+}
+
+TEST_F(RawlogMergeInstances, InstancesInsideSensoryFramesAreSeen)
+{
+	RawlogWriter writer(folder_.file("in.rawlog"));
+	mrpt::obs::CSensoryFrame frame;
+	frame.insert(scanAt(1));
+	frame.insert(std::make_shared<CObservationInstances>(twoInstances(1)));
+	writer.write(mrpt::obs::CActionCollection());
+	writer.write(frame);
+	writer.close();
+	writeSidecar({1});
+	const auto merge = run("in.rawlog out.rawlog");
+	EXPECT_EQ(merge.code, 1);
+	EXPECT_THAT(merge.err, HasSubstr("has instances already, in its sensory frames"));
+	const auto split = run("--split in.rawlog out.rawlog");
+	EXPECT_EQ(split.code, 1);
+	EXPECT_THAT(split.err, HasSubstr("has instances in sensory frames"));
+}
+
+TEST_F(RawlogMergeInstances, AHeaderThatRemovedInstancesLeftIsDropped)
+{
+	writeSidecar({1, 2});
+	RawlogWriter writer(folder_.file("in2.rawlog"));
+	mrpt::obs::CObservationComment header;
+	header.text = R"({"format": "semloop.instances/1"})";
+	writer.write(header);
+	for (const double time : {1, 2}) writer.write(*scanAt(time));
+	writer.close();
+	ASSERT_EQ(run("in2.rawlog merged.rawlog --instances in_instances.rawlog").code, 0);
+	ASSERT_EQ(run("--split merged.rawlog back.rawlog").code, 0);
+	EXPECT_THAT(contents("back.rawlog"), ElementsAre("3DRangeScan 1", "3DRangeScan 2"));
+	EXPECT_EQ(
+		uncompressed(folder_.file("back_instances.rawlog")),
+		uncompressed(folder_.file("in_instances.rawlog")));
+}
+
 TEST_F(RawlogMergeInstances, ASidecarOfAnotherRecordingIsRefused)
 {
 	writeSidecar({1, 2.25, 3});

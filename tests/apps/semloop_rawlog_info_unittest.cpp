@@ -90,6 +90,22 @@ TEST_F(SemloopRawlogInfo, TellsWhatIsOutOfOrder)
 							  "    1 earlier than the one before\n"));
 }
 
+TEST_F(SemloopRawlogInfo, ObservationsWithoutATimeAreCounted)
+{
+	RawlogWriter writer(folder_.file("a.rawlog"));
+	for (const double time : {1, 2, 3})
+	{
+		mrpt::obs::CObservationOdometry odometry;
+		odometry.timestamp = time == 2 ? INVALID_TIMESTAMP : mrpt::Clock::fromDouble(time);
+		writer.write(odometry);
+	}
+	writer.close();
+	EXPECT_THAT(
+		run("a.rawlog").out, HasSubstr("  (no label): 3 mrpt::obs::CObservationOdometry\n"
+									   "    1 without a time\n"
+									   "    0.000 s to 2.000 s, 0.50 a second\n"));
+}
+
 TEST_F(SemloopRawlogInfo, ACutFileEndsWithTheplaceAndWhatWasRead)
 {
 	RawlogWriter writer(folder_.file("a.rawlog"));

@@ -51,6 +51,23 @@ TEST_F(SemloopSlam, EveryFileKeyAndStageOfTheResultsIsInTheManual)
 	while (std::getline(stages, line)) expectExplained(line.substr(0, line.find(',')));
 }
 
+TEST_F(SemloopSlam, MakesTheOtherMapsOfItsConfiguration)
+{
+	const RecordedRun recorded = recordShortRun();
+	const std::string grid =
+		" --set semloop_map.occupancyGrid_count=1 --set "
+		"semloop_map_occupancyGrid_00_creationOpts.resolution=";
+	ASSERT_EQ(run(arguments(recorded) + grid + "0.05"), 0) << messages();
+	for (const char* const file : {"occupancyGrid_00.png", "occupancyGrid_00.gridmap"})
+		EXPECT_TRUE(std::filesystem::exists(folder_.file("result/maps/") + file)) << file;
+	EXPECT_EQ(run(arguments(recorded) + grid + "0"), 2);
+	EXPECT_EQ(messageLines(), 1u) << messages();
+	EXPECT_EQ(run(arguments(recorded) + " --set semloop_map.gridmap_count=1"), 2);
+	EXPECT_THAT(messages(), HasSubstr("[semloop_map] gridmap_count: no map 'gridmap'; use one of"));
+	EXPECT_EQ(run(arguments(recorded)), 0) << messages();
+	EXPECT_FALSE(std::filesystem::exists(folder_.file("result/maps")));
+}
+
 TEST_F(SemloopSlam, TheSimpleMapHasItsImagesInside)
 {
 	const std::filesystem::path images = folder_.path() / "changed_Images";

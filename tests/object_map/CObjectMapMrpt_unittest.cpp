@@ -248,6 +248,33 @@ TEST(CObjectMapMrpt, AFrameAndItsInstancesInAnyOrderBuildTheMapWithoutDepthCrops
 	}
 }
 
+TEST(CObjectMapMrpt, WithTwoCamerasInstancesGoWithTheScanOfTheirOwn)
+{
+	// Two cameras of one robot, which both images come from at once.
+	const CPose3D places[] = {onCircle(0, 8), onCircle(1, 8)};
+	const CPose3D robot(0.1, 0.2, 0, 0.3, 0, 0);
+	std::vector<CObservationInstances> instances;
+	std::vector<mrpt::obs::CObservation3DRangeScan> scans;
+	for (const auto& place : places)
+	{
+		const View view = renderView(ballAndBox(), testCamera(), place);
+		const CPose3D sensorPose = (-robot) + place + (-sensorFromCamera());
+		instances.push_back(observationOf(view, {kCup, kBook}, sensorPose));
+		for (auto& instance : instances.back().instances) instance.depth.reset();
+		scans.push_back(scanOf(view, instances.back()));
+	}
+	CObjectMap map;
+	for (const auto& scan : scans) EXPECT_FALSE(map.insertObservation(scan, robot));
+	EXPECT_TRUE(map.insertObservation(instances[0], robot));
+	EXPECT_TRUE(map.insertObservation(instances[1], robot));
+	ASSERT_EQ(map.objects().size(), 2U);
+	EXPECT_EQ(map.object(0).observations, 2);
+	EXPECT_EQ(map.object(1).observations, 2);
+	// Seen from one side.
+	EXPECT_LT(map.object(0).centre().distanceTo({0, 0, 0.85}), 0.08);
+	EXPECT_LT(map.object(1).centre().distanceTo({0, 0.45, 0.775}), 0.08);
+}
+
 TEST(CObjectMapMrpt, AScanOfAnotherTimeIsNotTheInstances)
 {
 	const View view = renderView(ballAndBox(), testCamera(), onCircle(0, 8));

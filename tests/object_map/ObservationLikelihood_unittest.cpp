@@ -118,6 +118,14 @@ TEST_F(ObservationLikelihoodOfBall, TheMapsCacheFollowsMapObservationAndOptions)
 	EXPECT_EQ(copy.computeObservationLikelihood(observation_, truth_), before);
 	observation_.instances.front().labelScores = {{kBook, 1.0f}};
 	EXPECT_LT(copy.computeObservationLikelihood(observation_, truth_), before - 0.5);
+	const double asBook = copy.computeObservationLikelihood(observation_, truth_);
+	CObservationInstances closer = observation_;
+	closer.camera.fx(closer.camera.fx() * 1.5);
+	closer.camera.fy(closer.camera.fy() * 1.5);
+	EXPECT_NE(copy.computeObservationLikelihood(closer, truth_), asBook);
+	EXPECT_EQ(copy.computeObservationLikelihood(observation_, truth_), asBook);
+	observation_.camera = closer.camera;
+	EXPECT_NE(copy.computeObservationLikelihood(observation_, truth_), asBook);
 	copy.likelihoodOptions.unexplained = 0.5;
 	EXPECT_NEAR(
 		copy.computeObservationLikelihood(observation_, truth_), std::log(0.5 + 0.5 * 0.1), 0.01);

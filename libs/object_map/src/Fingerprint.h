@@ -1,11 +1,14 @@
 #pragma once
 
+#include <mrpt/poses/CPose3D.h>
+
 #include <cstdint>
 #include <cstring>
 
 namespace semloop
 {
 class CObjectMap;
+class LabelSet;
 
 /** A hash over words of 64 bits, after FNV-1a (Fowler, Noll, Vo). */
 class Fingerprint
@@ -20,7 +23,9 @@ public:
 		hash_ = (hash_ ^ word) * 1099511628211u;
 		hash_ ^= hash_ >> 29;  // the product carries differences upwards only
 	}
-	/** What changes when the map does: ids, volumes, number of observations, poses. */
+	void add(const mrpt::poses::CPose3D& pose);
+	void add(const LabelSet& labels);
+	/** What changes when the map does: labels, ids, volumes, number of observations, poses. */
 	void add(const CObjectMap& map);
 
 	uint64_t value() const { return hash_; }

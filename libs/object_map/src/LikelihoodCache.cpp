@@ -2,17 +2,28 @@
 #include <semloop/object_map/LikelihoodCache.h>
 #include <semloop/object_map/ObservationLikelihood.h>
 
+#include <algorithm>
+
 #include "Fingerprint.h"
 
 namespace semloop
 {
 namespace
 {
+constexpr std::size_t kMostEntries = 4;  // cameras of a robot, with room
+
 void addObservation(Fingerprint& fingerprint, const CObservationInstances& observation)
 {
 	fingerprint.add(&observation);
 	fingerprint.add(observation.timestamp);
-	for (std::size_t i = 0; i < 6; ++i) fingerprint.add(observation.sensorPose[i]);
+	fingerprint.add(observation.sensorPose);
+	fingerprint.add(observation.labels);
+	const auto& camera = observation.camera;
+	for (const double value : {camera.fx(), camera.fy(), camera.cx(), camera.cy()})
+		fingerprint.add(value);
+	for (const double value : camera.dist) fingerprint.add(value);
+	fingerprint.add(camera.ncols);
+	fingerprint.add(camera.nrows);
 	for (const auto& instance : observation.instances)
 	{
 		for (const int side :
@@ -41,12 +52,15 @@ std::shared_ptr<const ObservationLikelihood> LikelihoodCache::of(
 	fingerprint.add(map);
 	addObservation(fingerprint, observation);
 	const std::lock_guard lock(mutex_);
-	if (!last_ || fingerprint_ != fingerprint.value())
-	{
-		last_ = std::make_shared<ObservationLikelihood>(map, observation, map.likelihoodOptions);
-		fingerprint_ = fingerprint.value();
-	}
-	return last_;
+	const auto known = std::find_if(
+		recent_.begin(), recent_.end(),
+		[&](const Entry& entry) { return entry.fingerprint == fingerprint.value(); });
+	if (known != recent_.end()) return known->likelihood;
+	if (recent_.size() == kMostEntries) recent_.pop_front();
+	recent_.push_back(
+		{fingerprint.value(),
+		 std::make_shared<ObservationLikelihood>(map, observation, map.likelihoodOptions)});
+	return recent_.back().likelihood;
 }
 
 }  // namespace semloop

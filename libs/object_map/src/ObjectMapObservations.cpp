@@ -1,3 +1,4 @@
+#include <mrpt/poses/Lie/SO.h>
 #include <semloop/association/Assignment.h>
 #include <semloop/association/MaskedSurface.h>
 #include <semloop/association/MatchingCost.h>
@@ -40,6 +41,24 @@ CostMatrix costMatrix(
 	return matchingCosts(cost, map.landmarks(predicted, segmented.frame.camera), detections);
 }
 
+/** Out of those that wait; null when none does. */
+template <class Observation>
+std::shared_ptr<Observation> takeNearest(
+	std::vector<std::shared_ptr<Observation>>& waiting, const CPose3D& sensorPose)
+{
+	const auto turn = [&](const CPose3D& pose)
+	{ return mrpt::poses::Lie::SO<3>::log((sensorPose - pose).getRotationMatrix()).norm(); };
+	const auto distance = [&](const auto& observation)
+	{ return observation->sensorPose.distanceTo(sensorPose) + turn(observation->sensorPose); };
+	const auto nearest = std::min_element(
+		waiting.begin(), waiting.end(),
+		[&](const auto& a, const auto& b) { return distance(a) < distance(b); });
+	if (nearest == waiting.end()) return nullptr;
+	const auto result = *nearest;
+	waiting.erase(nearest);
+	return result;
+}
+
 bool hasCrops(const CObservationInstances& observation)
 {
 	return std::any_of(
@@ -48,9 +67,30 @@ bool hasCrops(const CObservationInstances& observation)
 }
 }  // namespace
 
-bool UnpairedObservations::isPair() const
+void UnpairedObservations::startAt(mrpt::Clock::time_point time)
 {
-	return scan && instances && scan->timestamp == instances->timestamp;
+	if (time != time_) *this = {};
+	time_ = time;
+}
+
+std::optional<std::pair<UnpairedObservations::Scan, UnpairedObservations::Instances>>
+UnpairedObservations::add(const Scan& scan)
+{
+	startAt(scan->timestamp);
+	if (const auto instances = takeNearest(instances_, scan->sensorPose))
+		return std::pair(scan, instances);
+	scans_.push_back(scan);
+	return std::nullopt;
+}
+
+std::optional<std::pair<UnpairedObservations::Scan, UnpairedObservations::Instances>>
+UnpairedObservations::add(const Instances& instances)
+{
+	startAt(instances->timestamp);
+	if (const auto scan = takeNearest(scans_, instances->sensorPose))
+		return std::pair(scan, instances);
+	instances_.push_back(instances);
+	return std::nullopt;
 }
 
 bool CObjectMap::internal_insertObservation(
@@ -66,13 +106,13 @@ bool CObjectMap::internal_insertObservation(
 			all.end());
 		return insert(segmented, instances->labels, robotPose.value_or(CPose3D()));
 	}
-	if (instances) unpaired_.instances = std::make_shared<CObservationInstances>(*instances);
-	if (const auto* const scan = dynamic_cast<const CObservation3DRangeScan*>(&observation))
-		unpaired_.scan = std::make_shared<CObservation3DRangeScan>(*scan);
-	if (!unpaired_.isPair()) return false;
-	const UnpairedObservations pair = std::exchange(unpaired_, {});
+	const auto* const scan = dynamic_cast<const CObservation3DRangeScan*>(&observation);
+	if (!instances && !scan) return false;
+	const auto pair = scan ? unpaired_.add(std::make_shared<CObservation3DRangeScan>(*scan))
+						   : unpaired_.add(std::make_shared<CObservationInstances>(*instances));
+	if (!pair) return false;
 	return insert(
-		SegmentedFrame::fromScan(*pair.scan, *pair.instances), pair.instances->labels,
+		SegmentedFrame::fromScan(*pair->first, *pair->second), pair->second->labels,
 		robotPose.value_or(CPose3D()));
 }
 

@@ -18,7 +18,7 @@ struct SegmentedFrame
 	 *  CObservationInstances::validate(). */
 	static SegmentedFrame fromCrops(const CObservationInstances& observation);
 	/** Of the scan that the instances were found in. Throws as rgbdFrameFrom() and validate(), and
-	 *  InputError when scan and instances are of different cameras. */
+	 *  InputError when the images are of different sizes. */
 	static SegmentedFrame fromScan(
 		const mrpt::obs::CObservation3DRangeScan& scan, const CObservationInstances& observation);
 };

@@ -56,6 +56,8 @@ const CSimplePointsMap& SurfacePoints::of(const CObjectMap& map) const
 	if (!points_ || fingerprint_ != fingerprint.value())
 	{
 		points_ = pointsOf(map);
+		volumes_.clear();
+		for (const auto& [id, object] : map.objects()) volumes_.push_back(object.volume);
 		fingerprint_ = fingerprint.value();
 	}
 	return *points_;

@@ -110,13 +110,13 @@ CSerializable::Ptr RawlogReader::readObject()
 
 	const auto nextClass = stream_->nextClass();
 	if (file.size() == 0) fail("the file is empty");
-	if (file.state() == State::Damaged) fail("the compressed data are damaged");
+	if (file.state() == State::Damaged) failDamaged("the compressed data are damaged");
 	if (!nextClass && file.state() == State::Ended) return {};
-	if (file.state() != State::Good) fail("the file was cut: what comes before can be used");
+	if (file.state() != State::Good) failDamaged("the file was cut: what comes before can be used");
 
 	const std::string& name = *nextClass;
 	const bool isOldFormat = name == "?";
-	if (!isOldFormat && !isClassName(name)) fail("no MRPT object: not a rawlog, or damaged");
+	if (!isOldFormat && !isClassName(name)) failDamaged("no MRPT object: not a rawlog, or damaged");
 	if (!isOldFormat && !mrpt::rtti::findRegisteredClass(name))
 		fail("class " + name + " is not registered: load the plug-in that brings it");
 	try
@@ -127,16 +127,17 @@ CSerializable::Ptr RawlogReader::readObject()
 	}
 	catch (const std::exception& e)
 	{
-		if (file.state() == State::Damaged) fail("the compressed data are damaged");
+		if (file.state() == State::Damaged) failDamaged("the compressed data are damaged");
 		if (file.state() != State::Good)
-			fail("the file ends inside a " + name + ": it was cut; what comes before can be used");
+			failDamaged(
+				"the file ends inside a " + name + ": it was cut; what comes before can be used");
 		// Any first byte below 0x80 looks like the old format.
-		if (isOldFormat) fail("no MRPT object: not a rawlog, or damaged");
+		if (isOldFormat) failDamaged("no MRPT object: not a rawlog, or damaged");
 		const std::string reason = innermostMessage(e.what());
-		const bool unknown = reason.find("not registered") != std::string::npos;
-		fail(
-			"unreadable " + name + ": " + reason +
-			(unknown ? " Load the plug-in that brings it" : ""));
+		const std::string what = "unreadable " + name + ": " + reason;
+		if (reason.find("not registered") != std::string::npos)
+			fail(what + " Load the plug-in that brings it");
+		failDamaged(what);
 	}
 }
 
@@ -154,10 +155,20 @@ void RawlogReader::unpack(const CSerializable::Ptr& object)
 
 void RawlogReader::fail(const std::string& what) const
 {
-	throw InputError(
-		path_ + ": object " + std::to_string(objectsRead_) + ", near byte " +
-		std::to_string(stream_->archive.file.position()) + " of " +
-		std::to_string(stream_->archive.file.size()) + ": " + what);
+	throw InputError(place() + what);
+}
+
+void RawlogReader::failDamaged(const std::string& what) const
+{
+	if (objectsRead_ == 0) fail(what);
+	throw DamagedRawlogError(place() + what);
+}
+
+std::string RawlogReader::place() const
+{
+	const GzInput& file = stream_->archive.file;
+	return path_ + ": object " + std::to_string(objectsRead_) + ", near byte " +
+		   std::to_string(file.position()) + " of " + std::to_string(file.size()) + ": ";
 }
 
 std::string instancesSidecarPath(const std::string& rawlogPath)

@@ -14,6 +14,7 @@
 #include <semloop/segmentation/DnnSegmenter.h>
 #include <semloop/segmentation/RecordedSegmenter.h>
 #include <semloop/slam/Configuration.h>
+#include <semloop/slam/OtherMaps.h>
 #include <semloop/slam/SemanticSlam.h>
 
 namespace semloop
@@ -33,6 +34,14 @@ std::shared_ptr<Module> makeConfigured(
 	const auto module = makeModule<Module>(className, modulePlace(config, key));
 	module->configure(config, section);
 	return module;
+}
+
+void requireSlamSections(const mrpt::config::CConfigFileBase& config)
+{
+	auto known = configurationSections();
+	const auto maps = otherMapsSections(config);
+	known.insert(known.end(), maps.begin(), maps.end());
+	requireKnownSections(config, known);
 }
 
 std::string table(const char* section, const std::string& what, const Options& options)
@@ -59,13 +68,14 @@ const std::vector<std::string>& configurationSections()
 		"loop_detection",
 		"graph_matching",
 		"alignment",
-		"pose_graph"};
+		"pose_graph",
+		"semloop_map"};
 	return sections;
 }
 
 FrontEnd makeFrontEnd(const mrpt::config::CConfigFileBase& config)
 {
-	requireKnownSections(config, configurationSections());
+	requireSlamSections(config);
 	ModuleNames names;
 	names.loadFromConfigFile(config, "modules");
 	loadPlugins(names.plugins, modulePlace(config, "plugins"));
@@ -81,7 +91,7 @@ FrontEnd makeFrontEnd(const mrpt::config::CConfigFileBase& config)
 
 void SemanticSlam::makeModules(const mrpt::config::CConfigFileBase& config)
 {
-	requireKnownSections(config, configurationSections());
+	requireSlamSections(config);
 	modules_.loadFromConfigFile(config, "modules");
 	options_.loadFromConfigFile(config, "slam");
 	loadPlugins(modules_.plugins, modulePlace(config, "plugins"));
@@ -161,6 +171,15 @@ std::string configurationReference()
 		"graph_matching", "of semloop::SpectralMatcher, Eq. (4)-(6)", SpectralMatcherOptions());
 	page += table("alignment", "of the matched objects' surfaces", ObjectAlignerOptions());
 	page += table("pose_graph", "of semloop::CeresPoseGraph, Eq. (7)", CeresPoseGraphOptions());
+	page +=
+		"\n## Other maps\n"
+		"\nMaps of MRPT or of a plug-in beside the object map, made at the end from the key frames "
+		"at "
+		"their\noptimised poses and written to `OUT/maps`. `<map>_count = N` in `[semloop_map]` "
+		"asks for "
+		"them, as in\nthe programs of MRPT, and `[semloop_map_<map>_NN_creationOpts]`, "
+		"`[..._insertOpts]` and so on configure\neach (doc/mrpt-programs.md).\n";
+	page += table("semloop_map", "which other maps", OtherMapsOptions());
 	return page;
 }
 

@@ -63,15 +63,26 @@ protected:
 
 struct SegmentedFrame;
 
-/** A range scan and instances that wait for each other. */
-struct UnpairedObservations
+/** Range scans and instances of one time that wait for each other. With several cameras, instances go
+ *  with the scan whose sensor is nearest to theirs on the robot. */
+class UnpairedObservations
 {
+public:
 	// Shared, for particle filters copy the map.
-	std::shared_ptr<const mrpt::obs::CObservation3DRangeScan> scan;
-	std::shared_ptr<const CObservationInstances> instances;
+	using Scan = std::shared_ptr<const mrpt::obs::CObservation3DRangeScan>;
+	using Instances = std::shared_ptr<const CObservationInstances>;
 
-	/** Of one time. */
-	bool isPair() const;
+	/** A pair with what came now, which no longer waits; nothing yet. Those of another time before it
+	 *  are given up. */
+	std::optional<std::pair<Scan, Instances>> add(const Scan& scan);
+	std::optional<std::pair<Scan, Instances>> add(const Instances& instances);
+
+private:
+	void startAt(mrpt::Clock::time_point time);
+
+	mrpt::Clock::time_point time_;
+	std::vector<Scan> scans_;
+	std::vector<Instances> instances_;
 };
 
 /** What the map expects to see from a camera. */

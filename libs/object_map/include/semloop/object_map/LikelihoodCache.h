@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <deque>
 #include <memory>
 #include <mutex>
 
@@ -19,15 +20,21 @@ public:
 	LikelihoodCache(const LikelihoodCache&) {}
 	LikelihoodCache& operator=(const LikelihoodCache&) { return *this; }
 
-	/** The one that was made last when map and observation look the same: objects, poses, number of
-	 *  observations, options; time, boxes, scores, masks, and where the arrays lie. */
+	/** One of the last four that were made when map and observation look the same: labels, objects,
+	 *  poses, number of observations, options; time, camera, labels, boxes, scores, masks, and where the
+	 *  arrays lie. */
 	std::shared_ptr<const ObservationLikelihood> of(
 		const CObjectMap& map, const CObservationInstances& observation) const;
 
 private:
+	struct Entry
+	{
+		uint64_t fingerprint;
+		std::shared_ptr<const ObservationLikelihood> likelihood;
+	};
+
 	mutable std::mutex mutex_;
-	mutable uint64_t fingerprint_ = 0;
-	mutable std::shared_ptr<const ObservationLikelihood> last_;
+	mutable std::deque<Entry> recent_;
 };
 
 }  // namespace semloop

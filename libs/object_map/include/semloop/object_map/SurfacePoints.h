@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <memory>
 #include <mutex>
+#include <vector>
 
 namespace mrpt::maps
 {
@@ -12,6 +13,7 @@ class CSimplePointsMap;
 namespace semloop
 {
 class CObjectMap;
+class TsdfVolume;
 
 /** The surfaces of a map's objects as points in the world, for algorithms that know point maps. Made when
  *  asked for, and anew when the map has changed; a copy begins empty. */
@@ -30,6 +32,8 @@ private:
 	mutable std::mutex mutex_;
 	mutable uint64_t fingerprint_ = 0;
 	mutable std::shared_ptr<const mrpt::maps::CSimplePointsMap> points_;
+	// So that no new volume gets the address of one that is gone and looks the same.
+	mutable std::vector<std::weak_ptr<const TsdfVolume>> volumes_;
 };
 
 }  // namespace semloop

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <mrpt/obs/CObservation.h>
+#include <semloop/config/Error.h>
 #include <semloop/observations/ExternalImages.h>
 
 #include <cstddef>
@@ -11,6 +12,13 @@
 
 namespace semloop
 {
+/** A file that is a rawlog up to a place where it was cut or is damaged: what comes before is good. */
+class DamagedRawlogError : public InputError
+{
+public:
+	using InputError::InputError;
+};
+
 /** An object as it stands in a file. */
 struct RawlogObject
 {
@@ -26,8 +34,9 @@ struct RawlogObject
  *  passed over.
  *
  *  Unlike mrpt::obs::CRawlog it tells a file that ended from one that was cut: next() throws
- *  InputError naming file and byte when the file ends inside an object, or holds a class that is
- *  not registered (with the plug-in as the remedy). What was read before stays good. */
+ *  InputError naming file and byte when the file ends inside an object (DamagedRawlogError unless that
+ *  is the first one), or holds a class that is not registered (with the plug-in as the remedy). What was
+ *  read before stays good. */
 class RawlogReader
 {
 public:
@@ -53,6 +62,8 @@ private:
 	mrpt::serialization::CSerializable::Ptr readObject();
 	void unpack(const mrpt::serialization::CSerializable::Ptr& object);
 	[[noreturn]] void fail(const std::string& what) const;
+	[[noreturn]] void failDamaged(const std::string& what) const;
+	std::string place() const;
 
 	std::string path_;
 	std::string imagesFolder_;

@@ -1,0 +1,237 @@
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <mrpt/io/CFileGZInputStream.h>
+#include <mrpt/maps/COccupancyGridMap2D.h>
+#include <mrpt/maps/COccupancyGridMap3D.h>
+#include <mrpt/maps/COctoMap.h>
+#include <mrpt/maps/CSimplePointsMap.h>
+#include <mrpt/serialization/CArchive.h>
+#include <semloop/config/Error.h>
+#include <semloop/observations/CameraFrames.h>
+#include <semloop/slam/Configuration.h>
+#include <semloop/slam/OtherMaps.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <fstream>
+
+#include "SyntheticRun.h"
+
+namespace semloop
+{
+namespace
+{
+using namespace synthetic;
+using mrpt::config::CConfigFileMemory;
+using ::testing::AllOf;
+using ::testing::HasSubstr;
+
+/** A mapped room, true poses but for the drift. */
+struct Room
+{
+	explicit Room(double drift = 0, double degrees = 360)
+	{
+		RunOptions options;
+		options.degrees = degrees;
+		const RecordedRun recorded = recordRun(folder, options);
+		config = runConfiguration(recorded, drift);
+		logger.logging_enable_console_output = false;
+		slam = std::make_unique<SemanticSlam>(config, logger, timings);
+		FrontEnd front = makeFrontEnd(config);
+		FrameSource source(recorded.rawlog, front.segmenter, front.embedder, 2, timings);
+		while (auto frame = source.next()) slam->process(*frame);
+		slam->finish();
+		T_truth_world = cameraOnCircle(0) + (-slam->trajectory().front().pose);
+	}
+
+	mrpt::maps::CMultiMetricMap::Ptr maps(const CConfigFileMemory& definition) const
+	{
+		return OtherMaps(definition).build(*slam);
+	}
+
+	TemporaryFolder folder;
+	CConfigFileMemory config;
+	mrpt::system::COutputLogger logger;
+	StageTimings timings;
+	std::unique_ptr<SemanticSlam> slam;
+	CPose3D T_truth_world;
+};
+
+double distanceToBox(const Box& box, const TPoint3D& at)
+{
+	const TPoint3D p = box.T_world_box.inverseComposePoint(at);
+	const double dx = std::abs(p.x) - box.size.x / 2, dy = std::abs(p.y) - box.size.y / 2,
+				 dz = std::abs(p.z) - box.size.z / 2;
+	const double outside = std::hypot(std::max(dx, 0.0), std::max(dy, 0.0), std::max(dz, 0.0));
+	return std::abs(outside + std::min(0.0, std::max({dx, dy, dz})));
+}
+
+double distanceToSurface(const Scene& scene, const TPoint3D& at)
+{
+	double nearest = std::abs(at.z);  // the floor
+	for (const auto& s : scene.spheres)
+		nearest = std::min(nearest, std::abs((at - s.centre).norm() - s.radius));
+	for (const auto& box : scene.boxes) nearest = std::min(nearest, distanceToBox(box, at));
+	return nearest;
+}
+
+double meanDistanceToSurfaces(const mrpt::maps::CPointsMap& points, const CPose3D& T_truth_world)
+{
+	const Scene scene = roomScene(RunOptions().objects);
+	double sum = 0;
+	for (std::size_t i = 0; i < points.size(); ++i)
+	{
+		TPoint3D p;
+		points.getPoint(i, p.x, p.y, p.z);
+		sum += distanceToSurface(scene, T_truth_world.composePoint(p));
+	}
+	return sum / double(points.size());
+}
+
+CConfigFileMemory definition(const std::string& text)
+{
+	return CConfigFileMemory("[semloop_map]\n" + text);
+}
+
+const char* const kPoints =
+	"pointsMap_count = 1\n"
+	"[semloop_map_pointsMap_00_insertOpts]\nminDistBetweenLaserPoints = 0.05\n";
+
+void expectUsageError(const CConfigFileMemory& config, const ::testing::Matcher<std::string>& what)
+{
+	try
+	{
+		OtherMaps maps(config);
+		FAIL() << "no error";
+	}
+	catch (const UsageError& e)
+	{
+		EXPECT_THAT(std::string(e.what()), what);
+	}
+}
+}  // namespace
+
+TEST(OtherMaps, PointsLieOnTheSurfacesOfTheRoom)
+{
+	const Room room;
+	const auto maps = room.maps(definition(kPoints));
+	const auto points = maps->mapByClass<mrpt::maps::CSimplePointsMap>();
+	ASSERT_GT(points->size(), 2000u);
+	EXPECT_LT(meanDistanceToSurfaces(*points, room.T_truth_world), 0.01);
+}
+
+TEST(OtherMaps, AreMadeFromTheOptimisedPosesNotTheOdometrys)
+{
+	const Room room(0.8, 450);
+	const auto maps = room.maps(definition(kPoints));
+	const auto points = maps->mapByClass<mrpt::maps::CSimplePointsMap>();
+	// The same with the poses of the odometry, which nothing has corrected.
+	mrpt::maps::CSimplePointsMap drifted;
+	drifted.insertionOptions.minDistBetweenLaserPoints = 0.05f;
+	for (const auto& key : room.slam->keyFrames())
+	{
+		mrpt::obs::CObservation3DRangeScan scan = *key.scan;
+		mrpt::obs::T3DPointsProjectionParams sensorFrame;
+		sensorFrame.takeIntoAccountSensorPoseOnRobot = false;
+		scan.load();
+		scan.unprojectInto(scan, sensorFrame);
+		drifted.insertObservation(
+			scan, room.slam->odometryTrajectory()[key.frame].pose + (-sensorFromCamera()));
+	}
+	EXPECT_LT(
+		meanDistanceToSurfaces(*points, room.T_truth_world),
+		0.6 * meanDistanceToSurfaces(drifted, room.T_truth_world));
+}
+
+TEST(OtherMaps, AnOccupancyGridIsFreeWhereTheCameraWasAndOccupiedAtObjects)
+{
+	const Room room;
+	const auto maps =
+		room.maps(definition("occupancyGrid_count = 1\nscan_below = 0.5\n"
+							 "[semloop_map_occupancyGrid_00_creationOpts]\nresolution = 0.05\n"));
+	const auto grid = maps->mapByClass<mrpt::maps::COccupancyGridMap2D>();
+	ASSERT_TRUE(grid);
+	const auto occupied = [&](const TPoint3D& truth)
+	{
+		const auto p = room.T_truth_world.inverseComposePoint(truth);
+		float least = 1;
+		for (double dx = -0.1; dx <= 0.1; dx += 0.05)
+			for (double dy = -0.1; dy <= 0.1; dy += 0.05)
+				least = std::min(least, grid->getPos(float(p.x + dx), float(p.y + dy)));
+		return least < 0.4f;
+	};
+	for (int degrees = 0; degrees < 360; degrees += 30)
+	{
+		const auto p =
+			room.T_truth_world.inverseComposePoint(cameraOnCircle(degrees).translation());
+		EXPECT_GT(grid->getPos(float(p.x), float(p.y)), 0.5f) << degrees;
+	}
+	int inSlice = 0;
+	for (const auto& sphere : roomScene(RunOptions().objects).spheres)
+	{
+		if (sphere.centre.z < 0.8 || sphere.centre.z > 1.3) continue;
+		++inSlice;
+		const double r = std::hypot(sphere.centre.x, sphere.centre.y), to = (r - sphere.radius) / r;
+		EXPECT_TRUE(occupied({sphere.centre.x * to, sphere.centre.y * to, 1.2})) << sphere.id;
+	}
+	EXPECT_GE(inSlice, 3);
+}
+
+TEST(OtherMaps, EveryKindThatTakesPointsOrScansIsFilledAndSaved)
+{
+	const Room room(0, 100);
+	const OtherMaps other(
+		definition("pointsMap_count = 2\ncolourPointsMap_count = 1\noctoMap_count = 1\n"
+				   "COccupancyGridMap3D_count = 1\noccupancyGrid_count = 1\nobjectMap_count = 1\n"
+				   "[semloop_map_objectMap_00_insertOpts]\nmax_depth = 5\n"));
+	const auto maps = other.build(*room.slam);
+	ASSERT_EQ(maps->maps.size(), other.names().size());
+	for (std::size_t i = 0; i < maps->maps.size(); ++i)
+		EXPECT_FALSE(maps->maps[i]->isEmpty()) << other.names()[i];
+
+	const std::string folder = room.folder.file("maps");
+	writeOtherMaps(folder, other.names(), *maps);
+	for (const char* file :
+		 {"pointsMap_00.txt", "pointsMap_01.txt", "colourPointsMap_00.txt", "octoMap_00_binary.bt",
+		  "COccupancyGridMap3D_00.metricmap", "occupancyGrid_00.gridmap", "objectMap_00.objmap",
+		  "maps.3Dscene"})
+		EXPECT_TRUE(std::filesystem::exists(folder + "/" + file)) << file;
+
+	mrpt::io::CFileGZInputStream in(folder + "/occupancyGrid_00.gridmap");
+	mrpt::maps::COccupancyGridMap2D grid;
+	mrpt::serialization::archiveFrom(in) >> grid;
+	const auto original = maps->mapByClass<mrpt::maps::COccupancyGridMap2D>();
+	EXPECT_EQ(grid.getSizeX(), original->getSizeX());
+	EXPECT_EQ(grid.getRawMap(), original->getRawMap());
+
+	writeOtherMaps(folder, {}, mrpt::maps::CMultiMetricMap());
+	EXPECT_FALSE(std::filesystem::exists(folder));
+}
+
+TEST(OtherMaps, NothingIsRemovedThatNoRunWrote)
+{
+	const TemporaryFolder folder;
+	std::filesystem::create_directories(folder.file("maps"));
+	std::ofstream(folder.file("maps/mine.txt")) << "mine";
+	writeOtherMaps(folder.file("maps"), {}, mrpt::maps::CMultiMetricMap());
+	EXPECT_TRUE(std::filesystem::exists(folder.file("maps/mine.txt")));
+}
+
+TEST(OtherMaps, WhatMrptWouldPassOverInSilenceIsAnError)
+{
+	EXPECT_TRUE(OtherMaps(CConfigFileMemory("[slam]\n")).empty());
+	expectUsageError(
+		definition("pointMap_count = 1\n"),
+		AllOf(HasSubstr("pointMap_count: no map 'pointMap'"), HasSubstr("pointsMap")));
+	expectUsageError(definition("pointsMap = 1\n"), HasSubstr("pointsMap: unknown key"));
+	expectUsageError(definition("pointsMap_count = some\n"), HasSubstr("not allowed"));
+	expectUsageError(
+		definition("pointsMap_count = 1\n[semloop_map_pointsMap_01_insertOpts]\nx = 1\n"),
+		HasSubstr("[semloop_map_pointsMap_01_insertOpts]: there is no such map"));
+	expectUsageError(
+		definition(
+			"occupancyGrid_count = 1\n[semloop_map_occupancyGrid_00_creationOpts]\nresolution=0\n"),
+		AllOf(
+			HasSubstr("semloop_map_occupancyGrid_00"), HasSubstr("cannot be made of its options")));
+}
+}  // namespace semloop
