@@ -35,6 +35,8 @@ struct Room
 		options.degrees = degrees;
 		const RecordedRun recorded = recordRun(folder, options);
 		config = runConfiguration(recorded, drift);
+		config.write("slam", "scan_below", 0.5);
+		config.write("slam", "scan_above", 0.2);
 		logger.logging_enable_console_output = false;
 		slam = std::make_unique<SemanticSlam>(config, logger, timings);
 		FrontEnd front = makeFrontEnd(config);
@@ -147,7 +149,7 @@ TEST(OtherMaps, AnOccupancyGridIsFreeWhereTheCameraWasAndOccupiedAtObjects)
 {
 	const Room room;
 	const auto maps =
-		room.maps(definition("occupancyGrid_count = 1\nscan_below = 0.5\n"
+		room.maps(definition("occupancyGrid_count = 1\n"
 							 "[semloop_map_occupancyGrid_00_creationOpts]\nresolution = 0.05\n"));
 	const auto grid = maps->mapByClass<mrpt::maps::COccupancyGridMap2D>();
 	ASSERT_TRUE(grid);

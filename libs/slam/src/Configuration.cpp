@@ -179,7 +179,11 @@ std::string configurationReference()
 		"asks for "
 		"them, as in\nthe programs of MRPT, and `[semloop_map_<map>_NN_creationOpts]`, "
 		"`[..._insertOpts]` and so on configure\neach (doc/mrpt-programs.md).\n";
-	page += table("semloop_map", "which other maps", OtherMapsOptions());
+	page +=
+		"\n### `[semloop_map]` which other maps\n\n"
+		"| key | default | allowed | meaning |\n| --- | --- | --- | --- |\n"
+		"| `<map>_count` | `0` | integer in [0, 99] | how many maps of this class, for example "
+		"`occupancyGrid_count` |\n";
 	return page;
 }
 

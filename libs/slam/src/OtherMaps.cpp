@@ -1,19 +1,21 @@
 #include <mrpt/io/CFileGZOutputStream.h>
 #include <mrpt/maps/COccupancyGridMap2D.h>
+#include <mrpt/maps/COccupancyGridMap3D.h>
 #include <mrpt/maps/TMetricMapTypesRegistry.h>
 #include <mrpt/obs/CObservation2DRangeScan.h>
-#include <mrpt/obs/T3DPointsTo2DScanParams.h>
+#include <mrpt/obs/CObservation3DRangeScan.h>
 #include <mrpt/opengl/COpenGLScene.h>
 #include <mrpt/serialization/CArchive.h>
 #include <semloop/config/Error.h>
 #include <semloop/config/ExceptionMessage.h>
-#include <semloop/observations/CameraFrames.h>
+#include <semloop/config/Options.h>
 #include <semloop/slam/OtherMaps.h>
 
 #include <algorithm>
-#include <cmath>
 #include <cstdio>
 #include <filesystem>
+
+#include "KeyFrameObservations.h"
 
 namespace fs = std::filesystem;
 
@@ -21,10 +23,6 @@ namespace semloop
 {
 namespace
 {
-using mrpt::obs::CObservation2DRangeScan;
-using mrpt::obs::CObservation3DRangeScan;
-using mrpt::poses::CPose3D;
-
 const std::string kSection = "semloop_map";
 const std::string kCount = "_count";
 
@@ -66,6 +64,28 @@ std::vector<std::string> countedMaps(const mrpt::config::CConfigFileBase& config
 	return maps;
 }
 
+/** How many of each map. */
+class Counts : public Options
+{
+public:
+	explicit Counts(std::vector<std::string> maps) : maps_(std::move(maps)), counts_(maps_.size())
+	{
+	}
+	const std::vector<std::string>& maps() const { return maps_; }
+	int of(std::size_t map) const { return counts_[map]; }
+
+protected:
+	void describe(OptionFields& fields) override
+	{
+		for (std::size_t i = 0; i < maps_.size(); ++i)
+			fields.integer(maps_[i] + kCount, counts_[i], 0, 99, "how many of them");
+	}
+
+private:
+	std::vector<std::string> maps_;
+	std::vector<int> counts_;
+};
+
 std::string nameOf(const std::string& map, int index)
 {
 	char number[16];
@@ -101,45 +121,20 @@ catch (const std::exception& e)
 	throw UsageError(place + ": the map cannot be made of its options: " + exceptionMessage(e));
 }
 
-/** With points, without what is too far to trust. */
-CObservation3DRangeScan::Ptr scanWithPoints(
-	const CObservation3DRangeScan& original, double maxDepth)
+/** A map that takes the points gets no horizontal scan. */
+void insert(const KeyFrameObservations& observations, mrpt::maps::CMetricMap& map)
 {
-	const auto scan = CObservation3DRangeScan::Create(original);
-	scan->load();
-	const double limit = maxDepth / scan->rangeUnits;
-	for (int v = 0; v < scan->rangeImage.rows(); ++v)
-		for (int u = 0; u < scan->rangeImage.cols(); ++u)
-			if (scan->rangeImage(v, u) > limit) scan->rangeImage(v, u) = 0;
-	mrpt::obs::T3DPointsProjectionParams sensorFrame;
-	sensorFrame.takeIntoAccountSensorPoseOnRobot = false;
-	scan->unprojectInto(*scan, sensorFrame);
-	return scan;
-}
-
-/** Where a robot would stand that holds this sensor level. */
-CPose3D levelled(const CPose3D& T_world_sensor)
-{
-	const auto& m = T_world_sensor.getRotationMatrix();
-	return CPose3D(
-		T_world_sensor.x(), T_world_sensor.y(), T_world_sensor.z(), std::atan2(m(1, 0), m(0, 0)), 0,
-		0);
-}
-
-CObservation2DRangeScan horizontalScan(
-	const CObservation3DRangeScan& scan, const CPose3D& T_level_sensor,
-	const OtherMapsOptions& options)
-{
-	CObservation3DRangeScan onLevelRobot = scan;
-	onLevelRobot.sensorPose = T_level_sensor;
-	mrpt::obs::T3DPointsTo2DScanParams params;
-	params.sensorLabel = scan.sensorLabel;
-	params.use_origin_sensor_pose = true;
-	params.z_min = -options.scanBelow;
-	params.z_max = options.scanAbove;
-	CObservation2DRangeScan result;
-	onLevelRobot.convertTo2DScan(result, params);
-	return result;
+	bool hasPoints = false;
+	for (const auto& observation : *observations.frame)
+	{
+		const auto& isA = observation->GetRuntimeClass();
+		if (hasPoints && isA == CLASS_ID(mrpt::obs::CObservation2DRangeScan)) continue;
+		// A copy: COccupancyGridMap3D leaves other points in the scan than it found.
+		const auto copy =
+			std::dynamic_pointer_cast<mrpt::obs::CObservation>(observation->duplicateGetSmartPtr());
+		const bool taken = map.insertObservation(*copy, observations.T_world_robot);
+		hasPoints = hasPoints || (taken && isA == CLASS_ID(mrpt::obs::CObservation3DRangeScan));
+	}
 }
 
 [[noreturn]] void cannotWrite(const fs::path& path)
@@ -155,16 +150,6 @@ void saveWhole(const fs::path& path, const mrpt::maps::CMetricMap& map)
 }
 }  // namespace
 
-void OtherMapsOptions::describe(OptionFields& fields)
-{
-	for (std::size_t i = 0; i < maps.size(); ++i)
-		fields.integer(maps[i] + kCount, counts[i], 0, 99, "how many of them");
-	fields.number(
-		"scan_below", scanBelow, 0, 10,
-		"for maps that take 2D scans: of the points so far below the camera [m]");
-	fields.number("scan_above", scanAbove, 0, 10, "and so far above it [m]");
-}
-
 std::vector<std::string> otherMapsSections(const mrpt::config::CConfigFileBase& config)
 {
 	std::vector<std::string> sections;
@@ -179,13 +164,12 @@ std::vector<std::string> otherMapsSections(const mrpt::config::CConfigFileBase& 
 
 OtherMaps::OtherMaps(const mrpt::config::CConfigFileBase& config)
 {
-	options_.maps = countedMaps(config);
-	options_.counts.assign(options_.maps.size(), 0);
-	options_.loadFromConfigFile(config, kSection);
-	for (std::size_t i = 0; i < options_.maps.size(); ++i)
-		for (int index = 0; index < options_.counts[i]; ++index)
+	Counts counts(countedMaps(config));
+	counts.loadFromConfigFile(config, kSection);
+	for (std::size_t i = 0; i < counts.maps().size(); ++i)
+		for (int index = 0; index < counts.of(i); ++index)
 		{
-			const std::string& map = options_.maps[i];
+			const std::string& map = counts.maps()[i];
 			names_.push_back(nameOf(map, index));
 			const mrpt::maps::TMetricMapInitializer::Ptr definition(
 				mrpt::maps::TMetricMapInitializer::factory(map));
@@ -201,20 +185,14 @@ mrpt::maps::CMultiMetricMap::Ptr OtherMaps::build(const SemanticSlam& slam) cons
 {
 	const auto maps = mrpt::maps::CMultiMetricMap::Create();
 	maps->setListOfMaps(definitions_);
+	for (const auto& map : maps->maps)
+		// MRPT's decimation takes the image's upper rows only (2.5.8), and no ini file can say 1.
+		if (const auto grid = std::dynamic_pointer_cast<mrpt::maps::COccupancyGridMap3D>(map))
+			grid->insertionOptions.decimation_3d_range = 1;
 	for (const auto& key : slam.keyFrames())
 	{
-		const auto scan = scanWithPoints(*key.scan, slam.map().insertionOptions.maxDepth);
-		const CPose3D T_world_sensor =
-			slam.poseGraph().pose(NodeId::camera(key.frame)) + (-sensorFromCamera());
-		const CPose3D robot = T_world_sensor + (-scan->sensorPose);
-		const CPose3D level = levelled(T_world_sensor);
-		const auto flat = horizontalScan(*scan, (-level) + T_world_sensor, options_);
-		for (const auto& map : maps->maps)
-		{
-			const bool taken = map->insertObservation(*scan, robot);
-			map->insertObservation(*key.instances, robot);
-			if (!taken) map->insertObservation(flat, level);
-		}
+		const auto observations = keyFrameObservations(slam, key);
+		for (const auto& map : maps->maps) insert(observations, *map);
 	}
 	return maps;
 }

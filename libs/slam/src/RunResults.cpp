@@ -1,5 +1,4 @@
 #include <mrpt/maps/CSimpleMap.h>
-#include <mrpt/obs/CSensoryFrame.h>
 #include <mrpt/opengl/COpenGLScene.h>
 #include <mrpt/opengl/CSetOfLines.h>
 #include <mrpt/opengl/stock_objects.h>
@@ -7,8 +6,6 @@
 #include <semloop/config/Error.h>
 #include <semloop/object_map/ObjectFiles.h>
 #include <semloop/object_map/SemanticGraph.h>
-#include <semloop/observations/CameraFrames.h>
-#include <semloop/observations/ExternalImages.h>
 #include <semloop/pose_graph/G2oFile.h>
 #include <semloop/slam/RunResults.h>
 #include <sys/resource.h>
@@ -17,7 +14,8 @@
 #include <filesystem>
 #include <fstream>
 #include <nlohmann/json.hpp>
-#include <opencv2/imgcodecs.hpp>
+
+#include "KeyFrameObservations.h"
 
 namespace fs = std::filesystem;
 
@@ -50,35 +48,16 @@ void writeMeshes(const fs::path& folder, const SemanticSlam& slam)
 	}
 }
 
-/** So that a file with it can be moved without the rawlog's folder of images. */
-mrpt::obs::CObservation3DRangeScan::Ptr withImagesInside(
-	const mrpt::obs::CObservation3DRangeScan& original)
-{
-	const auto scan = mrpt::obs::CObservation3DRangeScan::Create(original);
-	scan->load();
-	scan->rangeImage_forceResetExternalStorage();
-	// A loaded image still is an external one: only a new one is written with its pixels.
-	if (scan->hasIntensityImage && scan->intensityImage.isExternallyStored())
-		scan->intensityImage = mrpt::img::CImage(
-			readImageFile(
-				scan->intensityImage.getExternalStorageFileAbsolutePath(), cv::IMREAD_UNCHANGED),
-			mrpt::img::DEEP_COPY);
-	return scan;
-}
-
 /** Robot poses and observations, for observations2map and friends. */
 void writeSimpleMap(const fs::path& path, const SemanticSlam& slam)
 {
 	mrpt::maps::CSimpleMap map;
 	for (const auto& key : slam.keyFrames())
 	{
-		auto frame = mrpt::obs::CSensoryFrame::Create();
-		frame->insert(withImagesInside(*key.scan));
-		frame->insert(key.instances);
+		const auto observations = keyFrameObservations(slam, key);
 		const auto pose = mrpt::poses::CPose3DPDFGaussian::Create();
-		pose->mean = slam.poseGraph().pose(NodeId::camera(key.frame)) +
-					 (-robotFromCamera(key.scan->sensorPose));
-		map.insert(pose, frame);
+		pose->mean = observations.T_world_robot;
+		map.insert(pose, observations.frame);
 	}
 	requireWritten(map.saveToFile(path.string()), path);
 }

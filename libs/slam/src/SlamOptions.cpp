@@ -46,6 +46,12 @@ void SlamOptions::describe(OptionFields& f)
 	f.number(
 		"key_pose_distance", keyPoseDistance, 0.01, 100,
 		"path between key poses of map.simplemap [m]");
+	f.number(
+		"scan_below", scanBelow, 0, 10,
+		"the horizontal scan of a key pose, for maps that take no points, is of what is so far "
+		"below "
+		"the camera [m]");
+	f.number("scan_above", scanAbove, 0, 10, "to so far above it [m]");
 }
 
 }  // namespace semloop

@@ -3,7 +3,6 @@
 #include <mrpt/config/CConfigFileBase.h>
 #include <mrpt/maps/CMultiMetricMap.h>
 #include <mrpt/maps/TMetricMapInitializer.h>
-#include <semloop/config/Options.h>
 #include <semloop/slam/SemanticSlam.h>
 
 #include <string>
@@ -11,25 +10,12 @@
 
 namespace semloop
 {
-/** [semloop_map]: the keys beside the counts of the maps. */
-struct OtherMapsOptions : Options
-{
-	double scanBelow = 0.3;         //!< of the horizontal scan, below the camera [m]
-	double scanAbove = 0.2;         //!< and above it [m]
-	std::vector<std::string> maps;  //!< for which there is a key <map>_count
-	std::vector<int> counts;        //!< beside maps
-
-protected:
-	void describe(OptionFields& fields) override;
-};
-
 /** Maps of other kinds that a run leaves beside its object map, defined as in every program of MRPT
  *  (mrpt::maps::TSetOfMetricMapInitializers) by [semloop_map] <map>_count = N and by
  *  [semloop_map_<map>_NN_creationOpts], [..._insertOpts] and so on.
  *
  *  They are made at the end, from the key frames at their optimised poses: a map gets the frame's
- *  points and instances, and if it takes no points, as an occupancy grid, a horizontal scan: of each
- *  direction the nearest point between scanBelow under the camera and scanAbove over it. */
+ *  points and instances, and if it takes no points, as an occupancy grid, a horizontal scan. */
 class OtherMaps
 {
 public:
@@ -44,7 +30,6 @@ public:
 	mrpt::maps::CMultiMetricMap::Ptr build(const SemanticSlam& slam) const;
 
 private:
-	OtherMapsOptions options_;
 	mrpt::maps::TSetOfMetricMapInitializers definitions_;
 	std::vector<std::string> names_;
 };

@@ -36,8 +36,10 @@ struct SlamOptions : Options
 	int minObservations = 5;        //!< objects seen in fewer frames are left out of the results
 	double observationSigma = 0.2;  //!< of e_oc [m]
 	double observationSigmaAngle = 0.2;  //!< of e_oc [rad]
-	double maxDriftSigmas = 4.0;  //!< of a loop closure's correction; 0: no limit
+	double maxDriftSigmas = 4.0;         //!< of a loop closure's correction; 0: no limit
 	double keyPoseDistance = 0.3;        //!< path between two key poses of map.simplemap [m]
+	double scanBelow = 0.1;              //!< of their horizontal scan: so far below the camera [m]
+	double scanAbove = 0.1;              //!< and so far above it [m]
 
 protected:
 	void describe(OptionFields& fields) override;
