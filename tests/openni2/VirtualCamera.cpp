@@ -327,12 +327,14 @@ private:
 		return !changed_.wait_until(lock, time, [&] { return stopped_; });
 	}
 
+	/** Somebody wants depth and colour. */
 	bool isWatched()
 	{
 		const std::lock_guard lock(mutex_);
-		return std::any_of(
-			streams_.begin(), streams_.end(),
-			[](const auto& stream) { return stream->isRunning(); });
+		return std::count_if(
+				   streams_.begin(), streams_.end(),
+				   [](const auto& stream)
+				   { return stream->isRunning() && stream->type() != ONI_SENSOR_IR; }) >= 2;
 	}
 
 	void play()
