@@ -89,7 +89,9 @@ TEST_F(Examples, TheirOptionsAreAsStrictAsSemloopsOwn)
 	writeConfiguration(
 		"[semloop_map]\ncoverageMap_count = 1\n[semloop_map_coverageMap_00_creationOpts]\n"
 		"resolution = 0\n");
-	EXPECT_EQ(run("").code, 2);
+	const auto noMap = run("");
+	EXPECT_EQ(noMap.code, 2);
+	EXPECT_THAT(noMap.err, HasSubstr("[semloop_map_coverageMap_00_...]: the map cannot be made"));
 }
 
 }  // namespace

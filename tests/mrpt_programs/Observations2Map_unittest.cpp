@@ -88,7 +88,7 @@ TEST_F(Observations2Map, MakesTheObjectsAndFillsMrptsMaps)
 		ASSERT_GT(T_truth_world.composePoint(p).z, -0.02);
 	EXPECT_GT(count, 1000u);
 	EXPECT_GT(fs::file_size(file("CColouredPointsMap")), 10000u);
-	EXPECT_GT(fs::file_size(file("COctoMap_01_binary.bt")), 1000u);
+	EXPECT_GT(fs::file_size(file("COctoMap_03_binary.bt")), 1000u);
 
 	mrpt::io::CFileGZInputStream in(file(".gridmap"));
 	mrpt::maps::COccupancyGridMap2D grid;

@@ -118,6 +118,10 @@ public:
 	{
 		const std::lock_guard lock(mutex_);
 		if (!running_) return;
+		// Room is for images of the mode.
+		if (image.size() != cv::Size(mode_.resolutionX, mode_.resolutionY) ||
+			int(image.elemSize()) != pixelSize())
+			return;
 		OniFrame* const frame = getServices().acquireFrame();
 		if (!frame) return;
 		const std::size_t bytes = image.total() * image.elemSize();
@@ -337,10 +341,27 @@ private:
 				   { return stream->isRunning() && stream->type() != ONI_SENSOR_IR; }) >= 2;
 	}
 
+	/** A rawlog that cannot be read further is a camera that is gone. */
 	void play()
 	{
+		try
+		{
+			if (!playAll()) return;
+		}
+		catch (const std::exception& e)
+		{
+			std::fprintf(stderr, "virtual camera: %s\n", e.what());
+		}
+		unplugged_();
+	}
+
+	/** False when it was told to stop. */
+	bool playAll()
+	{
 		while (!isWatched())
-			if (!waitUntil(Clock::now() + std::chrono::milliseconds(5))) return;
+			if (!waitUntil(Clock::now() + std::chrono::milliseconds(5))) return false;
+		// The library drops what comes before it has noted that a stream has started.
+		if (!waitUntil(Clock::now() + std::chrono::milliseconds(50))) return false;
 		const auto start = Clock::now();
 		auto late = std::chrono::duration<double>(0);
 		for (int index = 0; next_; ++index)
@@ -350,12 +371,12 @@ private:
 				late += std::chrono::duration<double>(settings_.stallSeconds);
 			const std::chrono::duration<double> time(index / settings_.rate);
 			const auto due = start + std::chrono::duration_cast<Clock::duration>(time + late);
-			if (!waitUntil(due)) return;
+			if (!waitUntil(due)) return false;
 			const bool lost = settings_.drop > 0 && index % settings_.drop == settings_.drop - 1;
 			if (!lost) send(*next_, index, uint64_t(std::llround((time + late).count() * 1e6)));
 			next_ = recording_.next();
 		}
-		unplugged_();
+		return true;
 	}
 
 	void send(const semloop::RgbdFrame& frame, int index, uint64_t microseconds)

@@ -44,11 +44,7 @@ public:
 	double resolution() const { return grid_.getResolution(); }
 
 protected:
-	void internal_clear() override
-	{
-		grid_.setSize(-1, 1, -1, 1, grid_.getResolution());
-		points_ = 0;
-	}
+	void internal_clear() override { setEmpty(grid_.getResolution()); }
 
 	bool internal_insertObservation(
 		const mrpt::obs::CObservation& observation,
@@ -61,8 +57,11 @@ protected:
 		{
 			const auto p = T_map_sensor.composePoint(mrpt::math::TPoint3D(
 				scan->points3D_x[i], scan->points3D_y[i], scan->points3D_z[i]));
-			grid_.resize(p.x, p.x, p.y, p.y, 0, 2.0);
-			++*grid_.cellByPos(p.x, p.y);
+			const double r = grid_.getResolution();
+			grid_.resize(p.x - r, p.x + r, p.y - r, p.y + r, 0, 2.0);
+			auto* const cell = grid_.cellByPos(p.x, p.y);
+			if (!cell) continue;
+			++*cell;
 			++points_;
 		}
 		return !scan->points3D_x.empty();
@@ -79,6 +78,13 @@ protected:
 	}
 
 private:
+	void setEmpty(double resolution)
+	{
+		const uint32_t none = 0;
+		grid_.setSize(-1, 1, -1, 1, resolution, &none);
+		points_ = 0;
+	}
+
 	mrpt::containers::CDynamicGrid<uint32_t> grid_{-1, 1, -1, 1, 0.1};
 	uint64_t points_ = 0;
 
@@ -107,8 +113,9 @@ mrpt::maps::CMetricMap* CoverageMap::internal_CreateFromMapDefinition(
 {
 	const auto& definition = dynamic_cast<const TMapDefinition&>(base);
 	ASSERT_GT_(definition.resolution, 0);
+	ASSERT_LT_(definition.resolution, 1);
 	auto* map = new CoverageMap();
-	map->grid_.setSize(-1, 1, -1, 1, definition.resolution);
+	map->setEmpty(definition.resolution);
 	return map;
 }
 

@@ -22,6 +22,9 @@ constexpr double kMostPoints = 20000;
 CObservation3DRangeScan::Ptr withImagesInside(const CObservation3DRangeScan& original)
 {
 	const auto scan = CObservation3DRangeScan::Create(original);
+	// New points come in their place.
+	scan->points3D_overrideExternalStoredFlag(false);
+	scan->hasPoints3D = false;
 	scan->load();
 	scan->rangeImage_forceResetExternalStorage();
 	// A loaded image still is an external one: only a new one is written with its pixels.
@@ -50,7 +53,7 @@ CObservation3DRangeScan unprojected(const CObservation3DRangeScan& scan, double 
 			if (depth(v, u) > limit || v % step != 0 || u % step != 0) depth(v, u) = 0;
 	mrpt::obs::T3DPointsProjectionParams params;
 	params.takeIntoAccountSensorPoseOnRobot = false;
-	// Its own decimation wants sizes that are multiples and takes the image's upper rows (2.5.8).
+	// Its own decimation wants sizes that are multiples of it.
 	params.decimation = 1;
 	result.unprojectInto(result, params);
 	return result;

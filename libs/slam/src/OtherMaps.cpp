@@ -23,6 +23,8 @@ namespace semloop
 {
 namespace
 {
+using mrpt::obs::CObservation3DRangeScan;
+
 const std::string kSection = "semloop_map";
 const std::string kCount = "_count";
 
@@ -121,19 +123,29 @@ catch (const std::exception& e)
 	throw UsageError(place + ": the map cannot be made of its options: " + exceptionMessage(e));
 }
 
+/** Without what is too far to trust, for maps that look at the image and not at the points. */
+void cutDepth(CObservation3DRangeScan& scan, double maxDepth)
+{
+	const double limit = maxDepth / scan.rangeUnits;
+	for (auto& value : scan.rangeImage)
+		if (value > limit) value = 0;
+}
+
 /** A map that takes the points gets no horizontal scan. */
-void insert(const KeyFrameObservations& observations, mrpt::maps::CMetricMap& map)
+void insert(const KeyFrameObservations& observations, double maxDepth, mrpt::maps::CMetricMap& map)
 {
 	bool hasPoints = false;
 	for (const auto& observation : *observations.frame)
 	{
 		const auto& isA = observation->GetRuntimeClass();
 		if (hasPoints && isA == CLASS_ID(mrpt::obs::CObservation2DRangeScan)) continue;
-		// A copy: COccupancyGridMap3D leaves other points in the scan than it found.
+		// A copy: COccupancyGridMap3D leaves fewer points in the scan than it found.
 		const auto copy =
 			std::dynamic_pointer_cast<mrpt::obs::CObservation>(observation->duplicateGetSmartPtr());
+		if (auto* const scan = dynamic_cast<CObservation3DRangeScan*>(copy.get()))
+			cutDepth(*scan, maxDepth);
 		const bool taken = map.insertObservation(*copy, observations.T_world_robot);
-		hasPoints = hasPoints || (taken && isA == CLASS_ID(mrpt::obs::CObservation3DRangeScan));
+		hasPoints = hasPoints || (taken && isA == CLASS_ID(CObservation3DRangeScan));
 	}
 }
 
@@ -186,13 +198,14 @@ mrpt::maps::CMultiMetricMap::Ptr OtherMaps::build(const SemanticSlam& slam) cons
 	const auto maps = mrpt::maps::CMultiMetricMap::Create();
 	maps->setListOfMaps(definitions_);
 	for (const auto& map : maps->maps)
-		// MRPT's decimation takes the image's upper rows only (2.5.8), and no ini file can say 1.
+		// With MRPT's 8 images must have sides that are multiples of it, and no ini file can say 1.
 		if (const auto grid = std::dynamic_pointer_cast<mrpt::maps::COccupancyGridMap3D>(map))
 			grid->insertionOptions.decimation_3d_range = 1;
 	for (const auto& key : slam.keyFrames())
 	{
 		const auto observations = keyFrameObservations(slam, key);
-		for (const auto& map : maps->maps) insert(observations, *map);
+		for (const auto& map : maps->maps)
+			insert(observations, slam.map().insertionOptions.maxDepth, *map);
 	}
 	return maps;
 }
