@@ -1,12 +1,11 @@
 #include "TumCamera.h"
 
-#include <mrpt/config/CConfigFile.h>
 #include <semloop/config/Error.h>
+#include <semloop/observations/CameraFile.h>
 
 #include <algorithm>
 #include <cctype>
 #include <filesystem>
-#include <vector>
 
 namespace semloop
 {
@@ -22,65 +21,6 @@ TCamera kinect(const std::string& name, double fx, double fy, double cx, double 
 	camera.ncols = 640;
 	camera.nrows = 480;
 	camera.setIntrinsicParamsFromValues(fx, fy, cx, cy);
-	return camera;
-}
-
-/** MRPT takes a camera without the key distortion_model for one without distortion. */
-void readDistortion(
-	const mrpt::config::CConfigFile& file, const std::string& section, TCamera& camera)
-{
-	if (file.keyExists(section, "distortion_model") || !file.keyExists(section, "dist")) return;
-	const auto model = file.read_enum(section, "distortion", mrpt::img::DistortionModel::plumb_bob);
-	std::vector<double> dist;
-	file.read_vector(section, "dist", std::vector<double>(), dist);
-	const std::size_t n = dist.size();
-	if (n != 4 && n != 5 && n != 8)
-		throw UsageError("dist must have 4, 5 or 8 numbers, not " + std::to_string(n));
-	if (model == mrpt::img::DistortionModel::kannala_brandt)
-		camera.setDistortionKannalaBrandt(dist[0], dist[1], dist[2], dist[3]);
-	else
-		camera.setDistortionParamsVector(dist);
-	camera.distortion = model;
-}
-
-std::string onlySection(const mrpt::config::CConfigFile& file)
-{
-	std::vector<std::string> sections;
-	file.getAllSections(sections);
-	const std::string usual = "CAMERA_PARAMS";
-	if (std::find(sections.begin(), sections.end(), usual) != sections.end()) return usual;
-	if (sections.size() != 1) throw UsageError("needs a section [" + usual + "]");
-	return sections.front();
-}
-
-std::string secondLine(const std::string& what)
-{
-	const auto begin = what.find("Message:");
-	if (begin == std::string::npos) return what.substr(0, what.find('\n'));
-	const auto text = what.find_first_not_of(' ', begin + 8);
-	return what.substr(text, what.find('\n', text) - text);
-}
-
-TCamera fromFile(const std::string& path)
-{
-	TCamera camera;
-	try
-	{
-		const mrpt::config::CConfigFile file(path);
-		const std::string section = onlySection(file);
-		camera.loadFromConfigFile(section, file);
-		readDistortion(file, section, camera);
-	}
-	catch (const UsageError& e)
-	{
-		throw UsageError(path + ": " + e.what());
-	}
-	catch (const std::exception& e)
-	{
-		throw UsageError(path + ": not a camera as MRPT writes it: " + secondLine(e.what()));
-	}
-	if (!(camera.fx() > 0 && camera.fy() > 0) || camera.ncols == 0 || camera.nrows == 0)
-		throw UsageError(path + ": resolution, fx and fy must be positive");
 	return camera;
 }
 
@@ -104,7 +44,7 @@ TCamera tumCamera(const std::string& nameOrFile)
 	if (nameOrFile == "ros") return kinect("ros", 525.0, 525.0, 319.5, 239.5);
 	if (!fs::is_regular_file(nameOrFile))
 		throw UsageError("--camera " + nameOrFile + ": neither fr1, fr2, fr3 or ros nor a file");
-	return fromFile(nameOrFile);
+	return readCameraFile(nameOrFile);
 }
 
 std::optional<std::string> guessTumCamera(const std::string& folder)

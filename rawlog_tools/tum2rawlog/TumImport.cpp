@@ -8,7 +8,6 @@
 #include <semloop/observations/Trajectory.h>
 
 #include <algorithm>
-#include <cstdio>
 #include <filesystem>
 #include <fstream>
 #include <opencv2/imgcodecs.hpp>
@@ -66,13 +65,6 @@ void copyBytes(const std::string& from, const std::string& to)
 		throw InputError(to + ": cannot be written: check that the folder exists and has space");
 }
 
-std::string numbered(const std::string& what, std::size_t number, const std::string& extension)
-{
-	char digits[24];
-	std::snprintf(digits, sizeof(digits), "%06zu", number);
-	return what + "_" + digits + extension;
-}
-
 /** Makes the frames of a sequence, one by one. */
 class FrameMaker
 {
@@ -80,12 +72,8 @@ public:
 	FrameMaker(const TumImport& import)
 		: import_(import),
 		  size_(int(import.camera.ncols), int(import.camera.nrows)),
-		  folder_(externalImagesFolder(import.rawlog))
+		  folder_(import.embed ? "" : makeExternalImagesFolder(import.rawlog))
 	{
-		if (import.embed) return;
-		std::error_code error;
-		fs::create_directories(folder_, error);
-		if (error) throw InputError(folder_ + ": cannot be made (" + error.message() + ")");
 	}
 
 	CObservation3DRangeScan make(const TumImage& color, const TumImage& depth, std::size_t number)
@@ -112,10 +100,10 @@ private:
 	void moveOut(CObservation3DRangeScan& scan, const std::string& colorPath, std::size_t number)
 	{
 		const std::string name =
-			numbered("color", number, fs::path(colorPath).extension().string());
+			externalImageName("color", number, fs::path(colorPath).extension().string());
 		copyBytes(colorPath, (fs::path(folder_) / name).string());
 		scan.intensityImage.setExternalStorage(name);
-		storeDepthExternally(scan, folder_, numbered("depth", number, ".bin"));
+		storeDepthExternally(scan, folder_, externalImageName("depth", number, ".bin"));
 	}
 
 	const TumImport& import_;

@@ -9,13 +9,13 @@ namespace example
 class Shape : public mrpt::rtti::CObject
 {
 	DEFINE_VIRTUAL_MRPT_OBJECT(Shape)
- public:
+public:
 	virtual int corners() const = 0;
 };
 class Triangle : public Shape
 {
 	DEFINE_MRPT_OBJECT(Triangle, example)
- public:
+public:
 	int corners() const override { return 3; }
 };
 class Unrelated : public mrpt::rtti::CObject

@@ -1,3 +1,4 @@
+#include <mrpt/core/format.h>
 #include <mrpt/obs/CObservationImage.h>
 #include <mrpt/obs/CObservationStereoImages.h>
 #include <semloop/config/Error.h>
@@ -104,6 +105,21 @@ std::string externalImagesFolder(const std::string& rawlogPath)
 	return path.replace_extension().string() + "_Images";
 }
 
+std::string makeExternalImagesFolder(const std::string& rawlogPath)
+{
+	const std::string folder = externalImagesFolder(rawlogPath);
+	std::error_code error;
+	fs::create_directories(folder, error);
+	if (error) throw InputError(folder + ": cannot be made (" + error.message() + ")");
+	return folder;
+}
+
+std::string externalImageName(
+	const std::string& kind, std::size_t frame, const std::string& extension)
+{
+	return kind + mrpt::format("_%06zu", frame) + extension;
+}
+
 void resolveExternalImages(mrpt::obs::CObservation& observation, const std::string& folder)
 {
 	if (auto* const scan = dynamic_cast<CObservation3DRangeScan*>(&observation))
@@ -116,6 +132,18 @@ void resolveExternalImages(mrpt::obs::CObservation& observation, const std::stri
 		resolve(stereo->imageRight, folder);
 		resolve(stereo->imageDisparity, folder);
 	}
+}
+
+void storeColorExternally(
+	CObservation3DRangeScan& scan, const std::string& folder, const std::string& fileName)
+{
+	const fs::path path = fs::path(folder) / fileName;
+	std::vector<uint8_t> bytes;
+	cv::imencode(path.extension().string(), scan.intensityImage.asCvMatRef(), bytes);
+	std::ofstream out(path, std::ios::binary);
+	out.write(reinterpret_cast<const char*>(bytes.data()), std::streamsize(bytes.size()));
+	if (!out.flush()) throw InputError(path.string() + ": cannot be written; is the disk full?");
+	scan.intensityImage.setExternalStorage(fileName);
 }
 
 void storeDepthExternally(

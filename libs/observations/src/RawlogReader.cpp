@@ -3,6 +3,7 @@
 #include <mrpt/obs/CSensoryFrame.h>
 #include <mrpt/rtti/CObject.h>
 #include <semloop/config/Error.h>
+#include <semloop/config/ExceptionMessage.h>
 #include <semloop/observations/RawlogReader.h>
 #include <semloop/observations/RawlogWriter.h>
 
@@ -21,19 +22,6 @@ namespace fs = std::filesystem;
 using mrpt::serialization::CSerializable;
 
 constexpr uint8_t kNewFormatFlag = 0x80;  // of the length byte before a class name
-
-/** MRPT wraps exceptions in exceptions, each with a call stack: the first line of the inmost one. */
-std::string innermostMessage(const std::string& what)
-{
-	std::size_t begin = 0;
-	for (const std::string mark : {"Original exception:\n", "Message:"})
-	{
-		const auto at = what.rfind(mark);
-		if (at != std::string::npos && at >= begin) begin = at + mark.size();
-	}
-	begin = std::min(what.find_first_not_of(' ', begin), what.size());
-	return what.substr(begin, what.find('\n', begin) - begin);
-}
 
 bool isClassName(const std::string& name)
 {
@@ -133,7 +121,7 @@ CSerializable::Ptr RawlogReader::readObject()
 				"the file ends inside a " + name + ": it was cut; what comes before can be used");
 		// Any first byte below 0x80 looks like the old format.
 		if (isOldFormat) failDamaged("no MRPT object: not a rawlog, or damaged");
-		const std::string reason = innermostMessage(e.what());
+		const std::string reason = exceptionMessage(e);
 		const std::string what = "unreadable " + name + ": " + reason;
 		if (reason.find("not registered") != std::string::npos)
 			fail(what + " Load the plug-in that brings it");

@@ -5,8 +5,8 @@
 
 namespace semloop
 {
-/** What went wrong, in one line: the first of what(), or of what MRPT's exceptions have behind
- *  "Message:", between their banner and a call stack. */
+/** What went wrong, in one line: the first of what() or, of MRPT's exceptions, which come in banners and
+ *  call stacks, of the inmost message. */
 std::string exceptionMessage(const std::exception& e);
 
 }  // namespace semloop

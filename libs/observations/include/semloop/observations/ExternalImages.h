@@ -3,6 +3,7 @@
 #include <mrpt/obs/CObservation.h>
 #include <mrpt/obs/CObservation3DRangeScan.h>
 
+#include <cstddef>
 #include <opencv2/core/mat.hpp>
 #include <opencv2/core/types.hpp>
 #include <string>
@@ -16,11 +17,24 @@ cv::Mat readImageFile(const std::string& path, int imreadFlags);
 /** The folder beside a rawlog where its external images live: path without extension + "_Images". */
 std::string externalImagesFolder(const std::string& rawlogPath);
 
+/** Makes that folder. Throws InputError when it cannot be made. */
+std::string makeExternalImagesFolder(const std::string& rawlogPath);
+
+/** Name of the file of a frame's image: "color", 12, ".png" -> color_000012.png. */
+std::string externalImageName(
+	const std::string& kind, std::size_t frame, const std::string& extension);
+
 /** Makes the names of an observation's external files absolute, so that they are found whatever
  *  folder MRPT's global CImage::setImagesPathBase() points to: two rawlogs can be open at once.
  *  Knows CObservation3DRangeScan, CObservationImage and CObservationStereoImages. Absolute names
  *  stay. */
 void resolveExternalImages(mrpt::obs::CObservation& observation, const std::string& folder);
+
+/** Moves the colour image of a scan to folder/fileName, in the format of its extension, and leaves the
+ *  name in the scan. Throws InputError when the file cannot be written. */
+void storeColorExternally(
+	mrpt::obs::CObservation3DRangeScan& scan, const std::string& folder,
+	const std::string& fileName);
 
 /** Moves the depth image of a scan to folder/fileName, in MRPT's format for external range images
  *  (gz of rows and columns as uint32 and row by row the uint16 values, little endian), and leaves the

@@ -1,8 +1,9 @@
 #pragma once
 
-#include <mrpt/obs/CObservation.h>
+#include <mrpt/serialization/CSerializable.h>
 #include <semloop/config/Error.h>
 #include <semloop/observations/ExternalImages.h>
+#include <semloop/observations/ObservationSource.h>
 
 #include <cstddef>
 #include <deque>
@@ -37,15 +38,15 @@ struct RawlogObject
  *  InputError naming file and byte when the file ends inside an object (DamagedRawlogError unless that
  *  is the first one), or holds a class that is not registered (with the plug-in as the remedy). What was
  *  read before stays good. */
-class RawlogReader
+class RawlogReader : public ObservationSource
 {
 public:
 	/** Throws InputError when the file is missing or unreadable. */
 	explicit RawlogReader(const std::string& path);
-	~RawlogReader();
+	~RawlogReader() override;
 
 	/** The next observation; empty at the end of the file. */
-	mrpt::obs::CObservation::Ptr next();
+	mrpt::obs::CObservation::Ptr next() override;
 
 	/** The next object, an observation or a sensory frame or actions, with its bytes: for programs that
 	 *  write a rawlog anew, bit by bit. Names of external images stay as they are. Empty at the end of
@@ -53,8 +54,9 @@ public:
 	std::optional<RawlogObject> nextObject();
 
 	const std::string& path() const { return path_; }
-	/** Position in the file as stored on disk, in [0, 1], for progress bars. */
-	double progress() const;
+	const std::string& name() const override { return path_; }
+	/** Position in the file as stored on disk. */
+	double progress() const override;
 
 private:
 	struct Stream;
