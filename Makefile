@@ -51,6 +51,7 @@ test-sanitize: dependencies ## runs all tests under AddressSanitizer and Undefin
 	cmake -S . -B $(BUILD_DIR)-sanitize -G Ninja -DCMAKE_BUILD_TYPE=RelWithDebInfo \
 		-DSEMLOOP_SANITIZE=$(SANITIZE) -DSEMLOOP_BUILD_BENCHMARKS=OFF $(CMAKE_ARGS)
 	cmake --build $(BUILD_DIR)-sanitize -j $(JOBS)
+	LSAN_OPTIONS=suppressions=$(CURDIR)/cmake/lsan-suppressions.txt \
 	UBSAN_OPTIONS=print_stacktrace=1:halt_on_error=1:suppressions=$(CURDIR)/cmake/ubsan-suppressions.txt ctest --test-dir $(BUILD_DIR)-sanitize -j $(JOBS) --output-on-failure
 
 bench: build ## runs the benchmarks one after the other

@@ -12,6 +12,7 @@
 #include <algorithm>
 #include <array>
 #include <atomic>
+#include <charconv>
 #include <chrono>
 #include <cmath>
 #include <condition_variable>
@@ -19,52 +20,97 @@
 #include <cstdlib>
 #include <cstring>
 #include <functional>
+#include <limits>
 #include <memory>
 #include <mutex>
 #include <opencv2/imgproc.hpp>
 #include <optional>
+#include <stdexcept>
 #include <string>
+#include <string_view>
 #include <thread>
 #include <vector>
 
 /** A driver of OpenNI2 whose camera sees the RGB-D frames of a rawlog: put it into a folder
  *  OpenNI2/Drivers beside libOpenNI2.so.0, under a name lib*.so.0. What it does is in the environment:
  *
- *  SEMLOOP_CAMERA_RAWLOG  the rawlog
- *  SEMLOOP_CAMERA_RATE    frames a second, 30 unless given
- *  SEMLOOP_CAMERA_DROP    n: every n-th frame is lost
- *  SEMLOOP_CAMERA_STALL   n:s: before frame n there is nothing for s seconds
- *  SEMLOOP_CAMERA_UNPLUG  n: after n frames the camera is gone; at the end of the rawlog it always is */
+ *  SEMLOOP_CAMERA_RAWLOG      the rawlog
+ *  SEMLOOP_CAMERA_RATE        frames a second, 30 unless given
+ *  SEMLOOP_CAMERA_DROP        n: every n-th frame is lost
+ *  SEMLOOP_CAMERA_DROP_COLOR  n: of every n-th frame the colour image is lost
+ *  SEMLOOP_CAMERA_STALL       n:s: before frame n (the first is 0) there is nothing for s seconds
+ *  SEMLOOP_CAMERA_UNPLUG      n: after n frames the camera is gone; at the end of the rawlog it always is
+ *
+ *  A wrong value is told on stderr, and there is no camera. Like a real one it sees nothing beyond ten
+ *  metres. It begins when both depth and colour are wanted.
+ *
+ *  Destroy the streams before OpenNI::shutdown(): the library destroys what is left with a lock held that
+ *  every new frame needs too, and then waits for ever for whatever thread a driver has. */
 namespace
 {
 using namespace oni::driver;
 using Clock = std::chrono::steady_clock;
 
-std::string environment(const char* name)
+constexpr int kFarthest = 10000;  // [mm]; recordings keep nothing beyond, nor this itself
+
+std::string environment(const std::string& name)
 {
-	const char* const value = std::getenv(name);
+	const char* const value = std::getenv(name.c_str());
 	return value ? value : "";
 }
 
-double number(const char* name, double otherwise)
+template <class Number>
+std::optional<Number> parse(std::string_view text)
 {
-	const std::string text = environment(name);
-	return text.empty() ? otherwise : std::stod(text);
+	Number value{};
+	const char* const last = text.data() + text.size();
+	const auto [end, error] = std::from_chars(text.data(), last, value);
+	if (error != std::errc() || end != last) return std::nullopt;
+	return value;
 }
 
+/** A variable of the environment, which must lie in [least, most]. */
+template <class Number>
+Number number(const std::string& name, Number otherwise, Number least, Number most)
+{
+	const std::string text = environment(name);
+	if (text.empty()) return otherwise;
+	const auto value = parse<Number>(text);
+	if (!value || !(*value >= least && *value <= most))
+		throw std::runtime_error(
+			name + "=" + text + ": must be a number from " + std::to_string(least) + " to " +
+			std::to_string(most));
+	return *value;
+}
+
+int count(const std::string& name)
+{
+	return number(name, 0, 1, std::numeric_limits<int>::max());
+}
+
+/** Throws what is wrong with them, in a line. */
 struct Settings
 {
 	std::string rawlog = environment("SEMLOOP_CAMERA_RAWLOG");
-	double rate = number("SEMLOOP_CAMERA_RATE", 30);
-	int drop = int(number("SEMLOOP_CAMERA_DROP", 0));
-	int unplug = int(number("SEMLOOP_CAMERA_UNPLUG", 0));
+	double rate = number("SEMLOOP_CAMERA_RATE", 30.0, 0.1, 10000.0);
+	int drop = count("SEMLOOP_CAMERA_DROP");  //!< 0: none, as below
+	int dropColor = count("SEMLOOP_CAMERA_DROP_COLOR");
+	int unplug = count("SEMLOOP_CAMERA_UNPLUG");
 	int stallBefore = -1;
 	double stallSeconds = 0;
 
 	Settings()
 	{
-		std::sscanf(
-			environment("SEMLOOP_CAMERA_STALL").c_str(), "%d:%lf", &stallBefore, &stallSeconds);
+		const std::string name = "SEMLOOP_CAMERA_STALL", text = environment(name);
+		if (text.empty()) return;
+		const auto colon = text.find(':');
+		const auto before = parse<int>(text.substr(0, colon));
+		const auto seconds =
+			colon < text.size() ? parse<double>(text.substr(colon + 1)) : std::nullopt;
+		if (!before || *before < 0 || !seconds || !(*seconds >= 0 && *seconds < 1e6))
+			throw std::runtime_error(name + "=" + text + ": must be FRAME:SECONDS");
+		stallBefore = *before;
+		stallSeconds = *seconds;
 	}
 };
 
@@ -97,11 +143,17 @@ OniStatus give(const Value& value, void* data, int* size)
 	return ONI_STATUS_OK;
 }
 
+bool isSame(const OniVideoMode& a, const OniVideoMode& b)
+{
+	return a.pixelFormat == b.pixelFormat && a.resolutionX == b.resolutionX &&
+		   a.resolutionY == b.resolutionY && a.fps == b.fps;
+}
+
 class CameraStream : public StreamBase
 {
 public:
-	CameraStream(OniSensorType type, const OniVideoMode& mode, cv::Vec2f fieldOfView)
-		: type_(type), mode_(mode), fieldOfView_(fieldOfView)
+	CameraStream(const OniSensorInfo& sensor, cv::Vec2f fieldOfView)
+		: sensor_(sensor), fieldOfView_(fieldOfView), mode_(sensor.pSupportedVideoModes[0])
 	{
 	}
 
@@ -112,27 +164,36 @@ public:
 	}
 	void stop() override { running_ = false; }
 	bool isRunning() const { return running_; }
-	OniSensorType type() const { return type_; }
+	OniSensorType type() const { return sensor_.sensorType; }
+
+	OniVideoMode mode() const
+	{
+		const std::lock_guard lock(mutex_);
+		return mode_;
+	}
 
 	void send(const cv::Mat& image, int index, uint64_t microseconds)
 	{
-		const std::lock_guard lock(mutex_);
-		if (!running_) return;
-		// Room is for images of the mode.
-		if (image.size() != cv::Size(mode_.resolutionX, mode_.resolutionY) ||
-			int(image.elemSize()) != pixelSize())
+		const OniVideoMode mode = this->mode();
+		// The library makes room for images of the mode.
+		if (!running_ || image.size() != cv::Size(mode.resolutionX, mode.resolutionY) ||
+			int(image.elemSize()) != pixelSize(mode))
 			return;
 		OniFrame* const frame = getServices().acquireFrame();
 		if (!frame) return;
 		const std::size_t bytes = image.total() * image.elemSize();
+		cv::Mat sent(image.size(), image.type(), frame->data);
+		if (mirrored_)
+			cv::flip(image, sent, 1);
+		else
+			image.copyTo(sent);
 		frame->dataSize = int(bytes);
-		std::memcpy(frame->data, image.data, bytes);
-		frame->sensorType = type_;
+		frame->sensorType = type();
 		frame->timestamp = microseconds;
 		frame->frameIndex = index;
 		frame->width = image.cols;
 		frame->height = image.rows;
-		frame->videoMode = mode_;
+		frame->videoMode = mode;
 		frame->croppingEnabled = FALSE;
 		frame->cropOriginX = frame->cropOriginY = 0;
 		frame->stride = int(image.cols * int(image.elemSize()));
@@ -156,19 +217,19 @@ public:
 		switch (id)
 		{
 			case ONI_STREAM_PROPERTY_VIDEO_MODE:
-				return give(mode_, data, size);
+				return give(mode(), data, size);
 			case ONI_STREAM_PROPERTY_HORIZONTAL_FOV:
 				return give(fieldOfView_[0], data, size);
 			case ONI_STREAM_PROPERTY_VERTICAL_FOV:
 				return give(fieldOfView_[1], data, size);
 			case ONI_STREAM_PROPERTY_MIRRORING:
-				return give(OniBool(FALSE), data, size);
+				return give(OniBool(mirrored_), data, size);
 			case ONI_STREAM_PROPERTY_MAX_VALUE:
-				return give(10000, data, size);
+				return give(kFarthest, data, size);
 			case ONI_STREAM_PROPERTY_MIN_VALUE:
 				return give(0, data, size);
 			case ONI_STREAM_PROPERTY_STRIDE:
-				return give(mode_.resolutionX * pixelSize(), data, size);
+				return give(stride(), data, size);
 			case ONI_STREAM_PROPERTY_CROPPING:
 				return give(OniCropping{}, data, size);
 			default:
@@ -178,39 +239,58 @@ public:
 
 	OniStatus setProperty(int id, const void* data, int size) override
 	{
-		if (id == ONI_STREAM_PROPERTY_VIDEO_MODE && size == int(sizeof(mode_)))
-			std::memcpy(&mode_, data, sizeof(mode_));
+		if (id == ONI_STREAM_PROPERTY_VIDEO_MODE) return setMode(data, size);
+		if (id == ONI_STREAM_PROPERTY_MIRRORING && size == int(sizeof(OniBool)))
+			mirrored_ = *static_cast<const OniBool*>(data) != FALSE;
 		return isPropertySupported(id) ? ONI_STATUS_OK : ONI_STATUS_NOT_SUPPORTED;
 	}
-	OniPixelFormat format() const { return mode_.pixelFormat; }
 
 	/** A recording that plays back wants to know them all. */
 	void notifyAllProperties() override
 	{
 		const auto tell = [&](int id, const auto& value)
 		{ raisePropertyChanged(id, &value, sizeof(value)); };
-		tell(ONI_STREAM_PROPERTY_VIDEO_MODE, mode_);
+		tell(ONI_STREAM_PROPERTY_VIDEO_MODE, mode());
 		tell(ONI_STREAM_PROPERTY_HORIZONTAL_FOV, fieldOfView_[0]);
 		tell(ONI_STREAM_PROPERTY_VERTICAL_FOV, fieldOfView_[1]);
-		tell(ONI_STREAM_PROPERTY_MIRRORING, OniBool(FALSE));
-		tell(ONI_STREAM_PROPERTY_MAX_VALUE, int(10000));
+		tell(ONI_STREAM_PROPERTY_MIRRORING, OniBool(mirrored_));
+		tell(ONI_STREAM_PROPERTY_MAX_VALUE, kFarthest);
 		tell(ONI_STREAM_PROPERTY_MIN_VALUE, int(0));
-		tell(ONI_STREAM_PROPERTY_STRIDE, int(mode_.resolutionX * pixelSize()));
+		tell(ONI_STREAM_PROPERTY_STRIDE, stride());
 		tell(ONI_STREAM_PROPERTY_CROPPING, OniCropping{});
 	}
 
 private:
-	int pixelSize() const
+	static int pixelSize(const OniVideoMode& mode)
 	{
-		if (mode_.pixelFormat == ONI_PIXEL_FORMAT_RGB888) return 3;
-		return mode_.pixelFormat == ONI_PIXEL_FORMAT_GRAY8 ? 1 : 2;
+		if (mode.pixelFormat == ONI_PIXEL_FORMAT_RGB888) return 3;
+		return mode.pixelFormat == ONI_PIXEL_FORMAT_GRAY8 ? 1 : 2;
+	}
+	int stride() const { return mode().resolutionX * pixelSize(mode()); }
+
+	/** One of the sensor's modes, while no images come. */
+	OniStatus setMode(const void* data, int size)
+	{
+		OniVideoMode wanted;
+		if (size != int(sizeof(wanted))) return ONI_STATUS_BAD_PARAMETER;
+		std::memcpy(&wanted, data, sizeof(wanted));
+		if (running_) return ONI_STATUS_OUT_OF_FLOW;
+		const auto* const modes = sensor_.pSupportedVideoModes;
+		if (std::none_of(
+				modes, modes + sensor_.numSupportedVideoModes,
+				[&](const OniVideoMode& mode) { return isSame(mode, wanted); }))
+			return ONI_STATUS_NOT_SUPPORTED;
+		const std::lock_guard lock(mutex_);
+		mode_ = wanted;
+		return ONI_STATUS_OK;
 	}
 
-	const OniSensorType type_;
-	OniVideoMode mode_;
+	const OniSensorInfo& sensor_;  //!< the camera's
 	const cv::Vec2f fieldOfView_;  //!< horizontal, vertical [rad]
 	std::atomic<bool> running_{false};
-	std::mutex mutex_;
+	std::atomic<bool> mirrored_{false};
+	mutable std::mutex mutex_;  //!< of the mode
+	OniVideoMode mode_;
 };
 
 class Camera : public DeviceBase
@@ -250,7 +330,11 @@ public:
 			stopped_ = true;
 		}
 		changed_.notify_all();
-		if (thread_.joinable()) thread_.join();
+		// Whoever is told that the camera is gone may close it there and then.
+		if (thread_.get_id() == std::this_thread::get_id())
+			thread_.detach();
+		else
+			thread_.join();
 	}
 
 	OniStatus getSensorInfoList(OniSensorInfo** sensors, int* count) override
@@ -265,8 +349,7 @@ public:
 		for (const auto& sensor : sensors_)
 			if (sensor.sensorType == type)
 			{
-				auto stream = std::make_unique<CameraStream>(
-					type, *sensor.pSupportedVideoModes, fieldOfView_);
+				auto stream = std::make_unique<CameraStream>(sensor, fieldOfView_);
 				const std::lock_guard lock(mutex_);
 				streams_.push_back(std::move(stream));
 				return streams_.back().get();
@@ -344,6 +427,7 @@ private:
 	/** A rawlog that cannot be read further is a camera that is gone. */
 	void play()
 	{
+		const auto unplugged = unplugged_;  // the call may be the end of this object
 		try
 		{
 			if (!playAll()) return;
@@ -352,7 +436,7 @@ private:
 		{
 			std::fprintf(stderr, "virtual camera: %s\n", e.what());
 		}
-		unplugged_();
+		unplugged();
 	}
 
 	/** False when it was told to stop. */
@@ -372,25 +456,30 @@ private:
 			const std::chrono::duration<double> time(index / settings_.rate);
 			const auto due = start + std::chrono::duration_cast<Clock::duration>(time + late);
 			if (!waitUntil(due)) return false;
-			const bool lost = settings_.drop > 0 && index % settings_.drop == settings_.drop - 1;
-			if (!lost) send(*next_, index, uint64_t(std::llround((time + late).count() * 1e6)));
+			if (!isNth(index, settings_.drop))
+				send(*next_, index, uint64_t(std::llround((time + late).count() * 1e6)));
 			next_ = recording_.next();
 		}
 		return true;
 	}
+
+	/** Whether it is one of every n, if n > 0. */
+	static bool isNth(int index, int n) { return n > 0 && index % n == n - 1; }
 
 	void send(const semloop::RgbdFrame& frame, int index, uint64_t microseconds)
 	{
 		cv::Mat color, depth;
 		cv::cvtColor(frame.color, color, cv::COLOR_BGR2RGB);
 		frame.depth.convertTo(depth, CV_16U, 1000);
+		depth.setTo(0, depth >= kFarthest);
 		const std::lock_guard lock(mutex_);
 		for (const auto& stream : streams_)
 		{
-			if (stream->type() == ONI_SENSOR_COLOR) stream->send(color, index, microseconds);
+			if (stream->type() == ONI_SENSOR_COLOR && !isNth(index, settings_.dropColor))
+				stream->send(color, index, microseconds);
 			if (stream->type() == ONI_SENSOR_DEPTH) stream->send(depth, index, microseconds);
 			if (stream->type() == ONI_SENSOR_IR)
-				stream->send(infrared(color, stream->format()), index, microseconds);
+				stream->send(infrared(color, stream->mode().pixelFormat), index, microseconds);
 		}
 	}
 
@@ -428,7 +517,6 @@ public:
 		std::snprintf(info_.uri, ONI_MAX_STR, "semloop://camera");
 		std::snprintf(info_.vendor, ONI_MAX_STR, "semloop");
 		std::snprintf(info_.name, ONI_MAX_STR, "virtual camera");
-		info_.usbVendorId = info_.usbProductId = 0;
 	}
 
 	OniStatus initialize(
@@ -436,7 +524,15 @@ public:
 		DeviceStateChangedCallback changed, void* cookie) override
 	{
 		DriverBase::initialize(connected, disconnected, changed, cookie);
-		if (!settings_.rawlog.empty()) deviceConnected(&info_);
+		try
+		{
+			settings_ = Settings();
+			if (!settings_->rawlog.empty()) deviceConnected(&info_);
+		}
+		catch (const std::exception& e)
+		{
+			std::fprintf(stderr, "virtual camera: %s\n", e.what());
+		}
 		return ONI_STATUS_OK;
 	}
 
@@ -445,7 +541,7 @@ public:
 		try
 		{
 			return new Camera(
-				settings_,
+				settings_.value(),
 				[this]
 				{
 					deviceStateChanged(&info_, ONI_DEVICE_STATE_ERROR);
@@ -454,7 +550,7 @@ public:
 		}
 		catch (const std::exception& e)
 		{
-			getServices().errorLoggerAppend("%s", e.what());
+			std::fprintf(stderr, "virtual camera: %s\n", e.what());
 			return nullptr;
 		}
 	}
@@ -463,7 +559,7 @@ public:
 	void shutdown() override {}
 
 private:
-	const Settings settings_;
+	std::optional<Settings> settings_;
 	OniDeviceInfo info_{};
 };
 }  // namespace

@@ -1,0 +1,71 @@
+#pragma once
+
+#include <mrpt/img/TCamera.h>
+#include <mrpt/obs/CObservation3DRangeScan.h>
+
+#include <chrono>
+#include <cstddef>
+#include <memory>
+#include <opencv2/core/mat.hpp>
+#include <optional>
+#include <string>
+
+namespace semloop
+{
+/** A colour and a depth image that were taken together, of the same size. */
+struct OniFrame
+{
+	std::chrono::microseconds time{0};  //!< of the depth image, since the first image
+	cv::Mat color;                      //!< CV_8UC3, BGR
+	cv::Mat depth;                      //!< CV_16UC1, in OniRecording::depthUnit(); 0 = invalid
+};
+
+/** Reads the frames of an .oni, a recording of OpenNI2's or OpenNI 1's, one by one and as fast as they
+ *  can be decoded. Depth comes as it was stored, bit by bit.
+ *
+ *  Images are paired by time, each with the nearest within half a frame's period: their indices slip
+ *  where the camera lost an image of one kind only. Mirrored recordings are turned back.
+ *
+ *  A process can have a file open once at a time: OpenNI2 knows it by its name.
+ *
+ *  The format does not say whether depth was registered to colour. It is taken to be: recording it so is
+ *  what Device::setImageRegistrationMode() is for. */
+class OniRecording
+{
+public:
+	/** Throws InputError when the file is missing, no .oni, cut so that OpenNI2 does not open it, without
+	 *  depth or colour, or when these differ in size or are in a format that is not known here. */
+	explicit OniRecording(const std::string& path);
+	~OniRecording();
+	OniRecording(OniRecording&&) noexcept;
+	OniRecording& operator=(OniRecording&&) noexcept;
+
+	/** The next pair; empty at the end of the recording. Throws InputError when the file is cut or
+	 *  damaged here; what came before stays good. */
+	std::optional<OniFrame> next();
+
+	const std::string& path() const;
+	/** What one unit of depth is, 0.001 or 0.0001 [m]. */
+	float depthUnit() const;
+	/** Intrinsics of the colour camera, hence of both images, as its field of view tells: f = size /
+	 *  (2 tan(fov / 2)), the principal point in the middle, no distortion. OpenNI2 does not know
+	 *  better. Throws InputError when the recording does not tell. */
+	mrpt::img::TCamera camera() const;
+
+	/** Images without partner, among those read so far. */
+	std::size_t unpairedColor() const;
+	std::size_t unpairedDepth() const;
+	/** Share of the recording that was read, in [0, 1]; 0 when it does not tell its length. */
+	double progress() const;
+
+private:
+	struct Impl;
+	std::unique_ptr<Impl> impl_;
+};
+
+/** The frame as a range scan that rgbdFrameFrom() takes, its images inside; depthUnit in metres. Time,
+ *  label and pose of the sensor are left to the caller. */
+mrpt::obs::CObservation3DRangeScan::Ptr rangeScanFrom(
+	const OniFrame& frame, float depthUnit, const mrpt::img::TCamera& camera);
+
+}  // namespace semloop

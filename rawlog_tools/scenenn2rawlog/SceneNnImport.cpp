@@ -1,0 +1,210 @@
+#include "SceneNnImport.h"
+
+#include <mrpt/core/format.h>
+#include <semloop/config/Error.h>
+#include <semloop/observations/ExternalImages.h>
+#include <semloop/observations/RawlogWriter.h>
+#include <semloop/observations/Trajectory.h>
+#include <semloop/sensors/OniRecording.h>
+
+#include <algorithm>
+#include <chrono>
+#include <filesystem>
+#include <memory>
+#include <optional>
+
+#include "InstanceTruth.h"
+#include "SceneNnTrajectory.h"
+#include "TrueObjects.h"
+
+namespace semloop
+{
+namespace
+{
+namespace fs = std::filesystem;
+
+constexpr std::size_t kPosesBeyondTheEnd = 5;  // players differ in what they pair at the end
+constexpr double kLeastShareWithPose = 0.5;
+constexpr double kLeastShareOnMesh =
+	0.5;  // a wrong mesh: its floor, and a tenth of the rest by chance
+
+std::string percent(double share)
+{
+	return mrpt::format("%.1f %%", 100 * share);
+}
+
+void exclude(
+	SceneNnAnnotation& annotation, const std::vector<std::string>& names, const std::string& path)
+{
+	for (const auto& name : names)
+	{
+		const auto before = annotation.size();
+		for (auto i = annotation.begin(); i != annotation.end();)
+			i = i->second == name ? annotation.erase(i) : std::next(i);
+		if (annotation.size() == before)
+			throw UsageError("--exclude " + name + ": no label of " + path + " has this text");
+	}
+}
+
+std::unique_ptr<InstanceTruth> readTruth(const SceneNnImport& import)
+{
+	if (import.annotation.empty()) return nullptr;
+	auto annotation = readSceneNnAnnotation(import.annotation);
+	exclude(annotation, import.exclude, import.annotation);
+	return std::make_unique<InstanceTruth>(
+		readAnnotatedMesh(import.mesh, annotation, import.annotation), import.tolerance);
+}
+
+class Importer
+{
+public:
+	explicit Importer(const SceneNnImport& import)
+		: import_(import),
+		  prefix_(fs::path(import.rawlog).replace_extension().string()),
+		  trajectory_(
+			  import.trajectory.empty() ? SceneNnTrajectory{}
+										: readSceneNnTrajectory(import.trajectory)),
+		  truth_(readTruth(import)),
+		  recording_(import.oni),
+		  rawlog_(import.rawlog),
+		  imagesFolder_(import.embed ? "" : makeExternalImagesFolder(import.rawlog))
+	{
+		if (truth_) instances_.emplace(prefix_ + "_truth_instances.rawlog");
+	}
+
+	void readAll(const std::function<void(std::size_t, double)>& progress)
+	{
+		while (const auto frame = recording_.next())
+		{
+			add(*frame);
+			progress(frames_, recording_.progress());
+		}
+		requireOneSequence();
+	}
+
+	/** Gives the files their final names. */
+	void close()
+	{
+		if (!import_.trajectory.empty())
+			writeTumTrajectory(prefix_ + "_groundtruth.tum", groundTruth_);
+		if (truth_)
+		{
+			instances_->close();
+			writeTrueObjects(prefix_, truth_->mesh(), truth_->observations());
+		}
+		rawlog_.close();
+	}
+
+	SceneNnReport report() const
+	{
+		SceneNnReport report;
+		report.frames = frames_;
+		report.unpairedColor = recording_.unpairedColor();
+		report.unpairedDepth = recording_.unpairedDepth();
+		report.poses = groundTruth_.size();
+		if (!truth_) return report;
+		const auto& seen = truth_->observations();
+		report.objects = seen.size();
+		report.objectsSeen = seen.size() - std::size_t(std::count(seen.begin(), seen.end(), 0));
+		report.missingObjects = truth_->mesh().missing;
+		report.shareOnMesh = truth_->shareOnMesh();
+		return report;
+	}
+
+private:
+	void add(const OniFrame& frame)
+	{
+		requireSize(frame.depth);
+		const auto scan = rangeScanFrom(frame, recording_.depthUnit(), import_.camera);
+		if (frames_ == 0) firstTime_ = frame.time;
+		scan->timestamp = import_.start + std::chrono::duration_cast<mrpt::Clock::duration>(
+											  frame.time - firstTime_);
+		scan->sensorLabel = "RGBD";
+		if (const auto pose = trajectory_.at(frames_))
+		{
+			groundTruth_.push_back({scan->timestamp, *pose});
+			if (truth_) instances_->write(truth_->of(*scan, *pose));
+		}
+		if (!import_.embed)
+		{
+			storeColorExternally(*scan, imagesFolder_, externalImageName("color", frames_, ".png"));
+			storeDepthExternally(*scan, imagesFolder_, externalImageName("depth", frames_, ".bin"));
+		}
+		rawlog_.write(*scan);
+		frames_++;
+	}
+
+	void requireSize(const cv::Mat& image) const
+	{
+		const auto& camera = import_.camera;
+		if (image.cols != int(camera.ncols) || image.rows != int(camera.nrows))
+			throw InputError(
+				import_.oni +
+				mrpt::format(
+					": images of %dx%d pixels where the camera has %ux%u: give the right one with "
+					"--camera",
+					image.cols, image.rows, camera.ncols, camera.nrows));
+	}
+
+	void requireOneSequence() const
+	{
+		const std::size_t poses = trajectory_.poses.size();
+		if (frames_ == 0)
+			throw InputError(
+				import_.oni + ": has no colour and depth of one time; record it again");
+		if (poses > frames_ + kPosesBeyondTheEnd)
+			throw InputError(
+				import_.trajectory + ": its last pose is for frame " + std::to_string(poses - 1) +
+				", but " + import_.oni + " has only " + std::to_string(frames_) +
+				"; give the trajectory of this recording, or all of the recording");
+		if (!import_.trajectory.empty() &&
+			double(groundTruth_.size()) < kLeastShareWithPose * double(frames_))
+			throw InputError(
+				import_.trajectory + ": has poses for only " + std::to_string(groundTruth_.size()) +
+				" of the " + std::to_string(frames_) + " frames of " + import_.oni +
+				"; give the trajectory of this recording");
+		if (truth_ && truth_->shareOnMesh() < kLeastShareOnMesh)
+			throw InputError(
+				import_.annotation + ": does not fit " + import_.oni + ": only " +
+				percent(truth_->shareOnMesh()) + " of the depth is within " +
+				mrpt::format("%g m of %s, ", import_.tolerance, import_.mesh.c_str()) +
+				percent(kLeastShareOnMesh) +
+				" are needed; give mesh, annotation and trajectory of this recording, or a larger "
+				"--tolerance");
+	}
+
+	const SceneNnImport& import_;
+	const std::string prefix_;
+	const SceneNnTrajectory trajectory_;
+	const std::unique_ptr<InstanceTruth> truth_;
+	OniRecording recording_;
+	RawlogWriter rawlog_;
+	const std::string imagesFolder_;
+	std::optional<RawlogWriter> instances_;
+	std::size_t frames_ = 0;
+	std::chrono::microseconds firstTime_{0};
+	Trajectory groundTruth_;
+};
+
+}  // namespace
+
+mrpt::img::TCamera sceneNnCamera()
+{
+	mrpt::img::TCamera camera;
+	camera.cameraName = "asus";
+	camera.ncols = 640;
+	camera.nrows = 480;
+	camera.setIntrinsicParamsFromValues(544.47329, 544.47329, 320, 240);
+	return camera;
+}
+
+SceneNnReport importSceneNn(
+	const SceneNnImport& import, const std::function<void(std::size_t, double)>& progress)
+{
+	Importer importer(import);
+	importer.readAll(progress);
+	importer.close();
+	return importer.report();
+}
+
+}  // namespace semloop

@@ -1,0 +1,120 @@
+#include <mrpt/config/CConfigFileMemory.h>
+#include <mrpt/obs/CObservationComment.h>
+#include <semloop/sensors/COniFileSensor.h>
+
+#include "CameraFixture.h"
+
+namespace semloop::test
+{
+namespace
+{
+using mrpt::hwdrivers::CGenericSensor;
+using testing::HasSubstr;
+
+class OniFileSensor : public CameraFixture
+{
+protected:
+	/** As a grabber makes it, ready to be asked. */
+	CGenericSensor::Ptr sensor(const std::string& settings) const
+	{
+		const mrpt::config::CConfigFileMemory config(
+			"[camera]\nsensorLabel = RGBD\nprocess_rate = 100\n" + settings);
+		auto made = CGenericSensor::createSensorPtr("COniFileSensor");
+		EXPECT_TRUE(made);
+		made->loadConfig(config, "camera");
+		made->initialize();
+		return made;
+	}
+
+	static std::vector<CObservation3DRangeScan::Ptr> take(CGenericSensor& sensor)
+	{
+		std::vector<CObservation3DRangeScan::Ptr> scans;
+		for (const auto& [time, object] : sensor.getObservations())
+			if (auto scan = std::dynamic_pointer_cast<CObservation3DRangeScan>(object))
+				scans.push_back(scan);
+		return scans;
+	}
+};
+
+TEST_F(OniFileSensor, GivesAFrameATimeAtFullSpeedAndTellsItsEnd)
+{
+	const auto played = sensor("speed = 0\nfile = " + record());
+	const auto& recorded = dynamic_cast<const RecordedSensor&>(*played);
+	for (int i = 0; i < kFrames; i++)
+	{
+		ASSERT_FALSE(recorded.isAtEnd());
+		played->doProcess();
+		EXPECT_EQ(framesOf(take(*played)), std::vector<int>{i});
+	}
+	EXPECT_TRUE(recorded.isAtEnd());
+}
+
+TEST_F(OniFileSensor, KeepsEveryFrameForAGrabberThatComesLate)
+{
+	const auto played = sensor("speed = 0\nfile = " + record());
+	for (int i = 0; i < kFrames; i++) played->doProcess();
+	EXPECT_EQ(framesOf(take(*played)), framesFromTo(0, kFrames - 1));
+}
+
+TEST_F(OniFileSensor, ThrowsAtTheEndOnceItsLastFrameIsSafe)
+{
+	const auto played = sensor("speed = 0\nfile = " + record("record", {{"UNPLUG", "3"}}));
+	for (int i = 0; i < 3; i++) played->doProcess();
+	auto scans = take(*played);
+	ASSERT_EQ(scans.size(), 3u);
+	EXPECT_NO_THROW(played->doProcess());
+	const auto after = played->getObservations();
+	ASSERT_EQ(after.size(), 1u);
+	EXPECT_TRUE(std::dynamic_pointer_cast<mrpt::obs::CObservationComment>(after.begin()->second));
+	EXPECT_GT(after.begin()->first, scans.back()->timestamp);
+	EXPECT_NO_THROW(played->doProcess());
+	scans.clear();
+	EXPECT_THAT(
+		messageOf<InputError>([&] { played->doProcess(); }), HasSubstr("played to its end"));
+}
+
+TEST_F(OniFileSensor, TellsACutRecordingFromItsEndAfterTheFramesBefore)
+{
+	const auto played = sensor("speed = 0\nfile = " + recordAndKill());
+	const auto& recorded = dynamic_cast<const RecordedSensor&>(*played);
+	std::vector<int> frames;
+	const std::string message = messageOf<InputError>(
+		[&]
+		{
+			while (!recorded.isAtEnd())
+			{
+				played->doProcess();
+				for (const int frame : framesOf(take(*played))) frames.push_back(frame);
+			}
+		});
+	EXPECT_THAT(message, HasSubstr("killed.oni: cut or damaged after image "));
+	ASSERT_GT(frames.size(), 1u);
+	EXPECT_EQ(frames, framesFromTo(0, int(frames.size()) - 1));
+}
+
+TEST_F(OniFileSensor, TakesIntrinsicsFromAFile)
+{
+	const std::string file = folder_.write(
+		"xtion.ini",
+		"[CAMERA_PARAMS]\nresolution = [64 48]\nfx = 60\nfy = 61\ncx = 30\ncy = 20\ndist = [0 0 0 "
+		"0 0]\n");
+	const std::string settings = "camera_file = " + file + "\nspeed = 0\nfile = " + record();
+	auto played = sensor(settings);
+	played->doProcess();
+	const auto scans = take(*played);
+	ASSERT_EQ(scans.size(), 1u);
+	EXPECT_EQ(scans[0]->cameraParams.fx(), 60);
+	EXPECT_EQ(scans[0]->cameraParamsIntensity.cy(), 20);
+
+	folder_.write(
+		"xtion.ini",
+		"[CAMERA_PARAMS]\nresolution = [640 480]\nfx = 600\nfy = 600\ncx = 300\ncy = 200\ndist = "
+		"[0 0 0 0 0]\n");
+	played.reset();
+	EXPECT_THAT(
+		messageOf<InputError>([&] { sensor(settings); }),
+		HasSubstr("xtion.ini: is for images of 640x480 pixels"));
+}
+
+}  // namespace
+}  // namespace semloop::test
