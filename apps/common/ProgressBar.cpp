@@ -28,14 +28,29 @@ ProgressBar::~ProgressBar()
 	clear();
 }
 
-void ProgressBar::update(std::size_t items, double share)
+double ProgressBar::dueAfter()
 {
 	const auto now = Clock::now();
 	const double elapsed = seconds(now - start_);
-	if (!terminal_ || elapsed < 2.0 || seconds(now - lastDraw_) < 0.2) return;
+	if (!terminal_ || elapsed < 2.0 || seconds(now - lastDraw_) < 0.2) return 0;
 	lastDraw_ = now;
 	drawn_ = true;
+	return elapsed;
+}
 
+void ProgressBar::updateEndless(std::size_t items, const std::string& note)
+{
+	const double elapsed = dueAfter();
+	if (elapsed == 0) return;
+	std::fprintf(
+		stderr, "\r%s %zu, %.1f/s%s \033[K", what_.c_str(), items, double(items) / elapsed,
+		note.c_str());
+}
+
+void ProgressBar::update(std::size_t items, double share)
+{
+	const double elapsed = dueAfter();
+	if (elapsed == 0) return;
 	constexpr int kWidth = 30;
 	share = std::clamp(share, 0.0, 1.0);
 	const std::string bar(std::size_t(share * kWidth), '#');

@@ -16,11 +16,16 @@ public:
 
 	/** Items done so far and the share of the whole, in [0, 1]. */
 	void update(std::size_t items, double share);
+	/** Same for work without an end in sight; the note comes behind the rate. */
+	void updateEndless(std::size_t items, const std::string& note);
 	/** Wipes the line, so that a message can be printed. */
 	void clear();
 
 private:
 	using Clock = std::chrono::steady_clock;
+
+	/** Seconds since the start when it is time to draw again, else 0. */
+	double dueAfter();
 
 	std::string what_;
 	bool terminal_ = false;

@@ -2,28 +2,28 @@
 
 #include <mrpt/config/CConfigFile.h>
 #include <semloop/config/Error.h>
-#include <semloop/config/ExceptionMessage.h>
+#include <semloop/observations/RawlogReader.h>
 #include <semloop/slam/Configuration.h>
 #include <semloop/slam/OtherMaps.h>
 #include <semloop/slam/RunResults.h>
 
 #include <chrono>
 #include <cstdio>
-#include <filesystem>
 #include <iostream>
-#include <optional>
+#include <memory>
 
 #include "Application.h"
+#include "LiveInput.h"
+#include "MappingLoop.h"
 #include "ProgressBar.h"
 #include "RunConfiguration.h"
+#include "SlamWindow.h"
 #include "StopSignal.h"
 
 namespace semloop
 {
 namespace
 {
-const char* const kCtrlC = "Ctrl-C";
-
 /** Warnings and news on stderr, one line each, without tearing the progress bar. */
 class ConsoleLogger : public mrpt::system::COutputLogger
 {
@@ -53,6 +53,7 @@ void useRecordedInstances(mrpt::config::CConfigFileBase& config, const SlamRunAr
 {
 	std::string file = arguments.instances;
 	if (file.empty() && config.keyExists("segmentation", "file")) return;
+	if (file.empty() && arguments.rawlog.empty()) return;
 	if (file.empty()) file = instancesSidecarPath(arguments.rawlog);
 	ModuleNames names;
 	names.loadFromConfigFile(config, "modules");
@@ -62,65 +63,6 @@ void useRecordedInstances(mrpt::config::CConfigFileBase& config, const SlamRunAr
 			"--instances needs semloop::RecordedSegmenter, but " + configFileName(config) +
 			": [modules] segmenter = " + names.segmenter);
 	if (recorded) config.write("segmentation", "file", file);
-}
-
-struct Progress
-{
-	SemanticSlam& slam;
-	RunInfo& info;
-	ProgressBar& bar;
-};
-
-void report(const std::vector<std::string>& warnings, Progress& progress)
-{
-	for (const auto& warning : warnings)
-	{
-		progress.bar.clear();
-		std::cerr << "semloop-slam: warning: " << warning << "\n";
-		progress.info.skippedFrames.push_back(warning);
-	}
-}
-
-/** The next frame, and the warnings about those that were skipped before it or before the end. */
-std::optional<SlamFrame> nextFrame(FrameSource& source, Progress& progress)
-{
-	try
-	{
-		auto frame = source.next();
-		report(frame ? frame->skipped : source.skippedAtEnd(), progress);
-		return frame;
-	}
-	catch (const std::exception&)
-	{
-		report(source.skippedAtEnd(), progress);
-		throw;
-	}
-}
-
-/** What ended the run early because of bad input; empty otherwise. */
-std::string processAll(FrameSource& source, std::size_t maxFrames, Progress progress)
-{
-	while (!stopRequested())
-	{
-		if (maxFrames > 0 && progress.slam.frameCount() >= maxFrames)
-		{
-			progress.info.endedBy = "--max-frames";
-			return {};
-		}
-		try
-		{
-			const auto frame = nextFrame(source, progress);
-			if (!frame) return {};
-			progress.slam.process(*frame);
-			progress.bar.update(progress.slam.frameCount(), frame->progress);
-		}
-		catch (const std::exception& e)
-		{
-			return progress.info.endedBy = exceptionMessage(e);
-		}
-	}
-	progress.info.endedBy = kCtrlC;
-	return {};
 }
 
 void printSummary(const SlamRunArguments& arguments, const SemanticSlam& slam, const RunInfo& info)
@@ -133,17 +75,51 @@ void printSummary(const SlamRunArguments& arguments, const SemanticSlam& slam, c
 		slam.frameCount(), info.skippedFrames.size(), slam.lostFrameCount(), info.wallSeconds,
 		slam.map().objects().size(), accepted, arguments.output.c_str());
 }
+
+void printWarning(const std::string& warning)
+{
+	std::cerr << "semloop-slam: warning: " << warning << "\n";
+}
+
+/** Tells how it ended; the exit code. */
+int conclude(
+	const SlamRunArguments& arguments, const SemanticSlam& slam, const RunInfo& info,
+	std::string failure)
+{
+	const bool stopped = info.endedBy == kEndedByUser;
+	const std::string where = "; results so far are in " + arguments.output;
+	if (failure.empty() && slam.frameCount() > 0 && slam.segmentedFrameCount() == 0)
+		printWarning(
+			"no frame has instances, so there are no objects and no loops; were they made from "
+			"this rawlog?");
+	if (stopped) std::cerr << "semloop-slam: stopped by Ctrl-C" << where << "\n";
+	if (failure.empty() && slam.frameCount() == 0 && !stopped)
+		failure = info.rawlog +
+				  ": no usable RGB-D frame (CObservation3DRangeScan with colour and depth) in it";
+	if (failure.empty()) return kSuccess;
+	std::cerr << "semloop-slam: " << failure << where << "\n";
+	return kFailed;
+}
+
+void requireArguments(const SlamRunArguments& arguments)
+{
+	requireArgument(arguments.config, "-c", "the configuration");
+	const bool isLive = !arguments.sensor.empty();
+	if (isLive && !arguments.rawlog.empty())
+		throw UsageError("-i and --live exclude each other: a run maps a rawlog or a sensor");
+	if (!isLive) requireArgument(arguments.rawlog, "-i", "the rawlog, or --live for a sensor");
+	if (!isLive && !arguments.record.empty())
+		throw UsageError("--record needs --live: it keeps what a sensor gives");
+	requireArgument(arguments.output, "-o", "the folder for the results");
+	requireFile(arguments.config, "config_ini/ has examples");
+	if (!isLive) requireFile(arguments.rawlog, "make one with tum2rawlog or rawlog-grabber");
+	requireWritableFolder(arguments.output);
+}
 }  // namespace
 
 int runSlam(const SlamRunArguments& arguments)
 {
-	requireArgument(arguments.config, "-c", "the configuration");
-	requireArgument(arguments.rawlog, "-i", "the rawlog");
-	requireArgument(arguments.output, "-o", "the folder for the results");
-	requireFile(arguments.config, "config_ini/ has examples");
-	requireFile(arguments.rawlog, "make one with tum2rawlog or rawlog-grabber");
-	requireWritableFolder(arguments.output);
-
+	requireArguments(arguments);
 	RunConfiguration config(arguments.config);
 	config.apply(arguments.overrides);
 	useRecordedInstances(config, arguments);
@@ -160,31 +136,36 @@ int runSlam(const SlamRunArguments& arguments)
 	info.config = arguments.config;
 
 	catchStopSignal();
-	FrameSource source(
-		arguments.rawlog, frontEnd.segmenter, frontEnd.embedder, slam.options().framesAhead,
-		timings);
-	std::string failure = processAll(source, arguments.maxFrames, {slam, info, bar});
+	std::unique_ptr<SlamWindow> window;
+	if (arguments.window) window = std::make_unique<SlamWindow>("semloop-slam");
+	MappingLoop loop(slam, timings, info, bar, window.get(), arguments.maxFrames);
+	std::unique_ptr<LiveInput> live;
+	std::string failure;
+	if (arguments.sensor.empty())
+	{
+		FrameSource source(
+			std::make_unique<RawlogReader>(arguments.rawlog), frontEnd, slam.options().framesAhead,
+			timings);
+		failure = loop.run(source);
+	}
+	else
+	{
+		live = std::make_unique<LiveInput>(config, arguments.sensor, arguments.record);
+		info.rawlog = live->sensor().name();
+		info.endedBy = "end of the recording";
+		failure = live->run(loop, frontEnd, slam, timings);
+	}
 	bar.clear();
+	window.reset();
 	slam.finish();
 	info.wallSeconds =
 		std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
 	writeRunResults(arguments.output, slam, info, timings);
 	writeOtherMaps(arguments.output + "/maps", otherMaps.names(), *otherMaps.build(slam));
 	printSummary(arguments, slam, info);
-	if (failure.empty() && slam.frameCount() > 0 && slam.segmentedFrameCount() == 0)
-		std::cerr
-			<< "semloop-slam: warning: no frame has instances, so there are no objects and no "
-			   "loops; were they made from this rawlog?\n";
-	if (info.endedBy == kCtrlC)
-		std::cerr << "semloop-slam: stopped by Ctrl-C; results so far are in " << arguments.output
-				  << "\n";
-	if (failure.empty() && slam.frameCount() == 0 && !stopRequested())
-		failure = arguments.rawlog +
-				  ": no usable RGB-D frame (CObservation3DRangeScan with colour and depth) in it";
-	if (failure.empty()) return kSuccess;
-	std::cerr << "semloop-slam: " << failure << "; results so far are in " << arguments.output
-			  << "\n";
-	return kFailed;
+	const int code = conclude(arguments, slam, info, failure);
+	if (live) live->leaveIfStuck(code);
+	return code;
 }
 
 }  // namespace semloop

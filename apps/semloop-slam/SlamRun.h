@@ -8,14 +8,17 @@ namespace semloop
 struct SlamRunArguments
 {
 	std::string config;
-	std::string rawlog;
+	std::string rawlog;  //!< empty: live
+	std::string sensor;  //!< section of the configuration; empty: not live
+	std::string record;  //!< rawlog for what the sensor gives; empty: none
 	std::string output;
 	std::string instances;               //!< empty: the sidecar beside the rawlog, if any
 	std::vector<std::string> overrides;  //!< section.key=value
-	std::size_t maxFrames = 0;           //!< 0: all
+	bool window = false;
+	std::size_t maxFrames = 0;  //!< 0: all
 };
 
-/** Maps a rawlog and writes the results, whatever ends the run. Returns an exit code; throws what
+/** Maps a rawlog, or what a sensor sees, and writes the results, whatever ends the run. Returns an exit code; throws what
  *  makes a run impossible from the start. */
 int runSlam(const SlamRunArguments& arguments);
 

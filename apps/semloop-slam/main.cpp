@@ -2,9 +2,28 @@
 #include <semloop/slam/Configuration.h>
 
 #include <iostream>
+#include <string>
+#include <vector>
 
 #include "Application.h"
 #include "SlamRun.h"
+
+namespace
+{
+/** The arguments, with the section that --live stands for when none follows. */
+std::vector<char*> withSensorSection(int argc, char** argv)
+{
+	static char section[] = "sensor";
+	std::vector<char*> words;
+	for (int i = 0; i < argc; ++i)
+	{
+		words.push_back(argv[i]);
+		const bool isLast = i + 1 == argc || argv[i + 1][0] == '-';
+		if (std::string(argv[i]) == "--live" && isLast) words.push_back(section);
+	}
+	return words;
+}
+}  // namespace
 
 int main(int argc, char** argv)
 {
@@ -13,14 +32,21 @@ int main(int argc, char** argv)
 		[&]() -> int
 		{
 			TCLAP::CmdLine command(
-				"Object-level RGB-D SLAM with semantic loop closure. Reads a rawlog with RGB-D "
-				"frames, "
-				"writes trajectory, objects, loops and maps.",
+				"Object-level RGB-D SLAM with semantic loop closure. Maps a rawlog with RGB-D "
+				"frames, or what a sensor sees; writes trajectory, objects, loops and maps.",
 				' ', SEMLOOP_VERSION);
 			TCLAP::ValueArg<std::string> config(
 				"c", "config", "configuration, see config_ini/", false, "", "CONFIG.ini", command);
 			TCLAP::ValueArg<std::string> input(
 				"i", "input", "rawlog with CObservation3DRangeScan", false, "", "IN.rawlog",
+				command);
+			TCLAP::ValueArg<std::string> live(
+				"", "live",
+				"grabs from the sensor that this section of the configuration describes; --live "
+				"alone: [sensor]",
+				false, "", "SECTION", command);
+			TCLAP::ValueArg<std::string> record(
+				"", "record", "keeps what the sensor of --live gives", false, "", "OUT.rawlog",
 				command);
 			TCLAP::ValueArg<std::string> output(
 				"o", "output", "folder for the results", false, "", "OUT/", command);
@@ -31,11 +57,16 @@ int main(int argc, char** argv)
 			TCLAP::MultiArg<std::string> set(
 				"s", "set", "overrides one key of the configuration", false, "section.key=value",
 				command);
+			TCLAP::SwitchArg gui(
+				"", "gui", "a window with the camera's picture, the map and the last loop",
+				command);
 			TCLAP::ValueArg<long> maxFrames(
 				"", "max-frames", "stops after so many frames; 0: all", false, 0, "N", command);
 			TCLAP::SwitchArg helpConfig(
 				"", "help-config", "prints the reference of all configuration keys", command);
-			if (!semloop::parseArguments(command, argc, argv)) return semloop::kSuccess;
+			auto words = withSensorSection(argc, argv);
+			if (!semloop::parseArguments(command, int(words.size()), words.data()))
+				return semloop::kSuccess;
 			if (helpConfig.getValue())
 			{
 				std::cout << semloop::configurationReference();
@@ -46,8 +77,11 @@ int main(int argc, char** argv)
 			semloop::SlamRunArguments arguments;
 			arguments.config = config.getValue();
 			arguments.rawlog = input.getValue();
+			arguments.sensor = live.getValue();
+			arguments.record = record.getValue();
 			arguments.output = output.getValue();
 			arguments.instances = instances.getValue();
+			arguments.window = gui.getValue();
 			arguments.overrides = set.getValue();
 			arguments.maxFrames = std::size_t(maxFrames.getValue());
 			return semloop::runSlam(arguments);

@@ -104,11 +104,28 @@ TEST_F(RecordedSegmenterTest, EntriesThatNoFrameAsksForArePassedOver)
 
 TEST_F(RecordedSegmenterTest, AMillisecondIsTheTolerance)
 {
-	record({1.0, 2.0});
+	record({1.0, 2.0, 3.0});
 	EXPECT_TRUE(segmenter_.segment(frameAt(0.9991)));
-	EXPECT_TRUE(segmenter_.segment(frameAt(1.0009)));
-	EXPECT_FALSE(segmenter_.segment(frameAt(1.998)));
-	EXPECT_FALSE(segmenter_.segment(frameAt(2.002)));
+	EXPECT_TRUE(segmenter_.segment(frameAt(2.0009)));
+	EXPECT_FALSE(segmenter_.segment(frameAt(2.998)));
+	EXPECT_FALSE(segmenter_.segment(frameAt(3.002)));
+}
+
+TEST_F(RecordedSegmenterTest, ACameraThatPlaysTheRecordingMayBeOffByMore)
+{
+	record({1.0, 1.1, 1.2});
+	RecordedSegmenterOptions options;
+	options.file = path_;
+	options.maxTimeDifference = 0.04;
+	segmenter_.configure(options);
+	const auto early = segmenter_.segment(frameAt(0.97)), late = segmenter_.segment(frameAt(1.13));
+	ASSERT_TRUE(early && late);
+	// They are the frame's now.
+	EXPECT_EQ(early->timestamp, frameAt(0.97).time);
+	EXPECT_EQ(late->timestamp, frameAt(1.13).time);
+	// An entry is of one frame.
+	EXPECT_FALSE(segmenter_.segment(frameAt(1.135)));
+	EXPECT_TRUE(segmenter_.segment(frameAt(1.2)));
 }
 
 TEST_F(RecordedSegmenterTest, ASizeThatDoesNotFitIsAnErrorWithFileTimeAndBothSizes)

@@ -1,5 +1,6 @@
 #include <gtest/gtest.h>
 #include <semloop/config/Error.h>
+#include <semloop/observations/RawlogReader.h>
 #include <semloop/slam/Configuration.h>
 #include <semloop/slam/FrameSource.h>
 
@@ -34,7 +35,8 @@ struct Collected
 Collected readAll(const std::string& rawlog, int framesAhead)
 {
 	StageTimings timings;
-	FrameSource source(rawlog, std::make_shared<NoSegmenter>(), nullptr, framesAhead, timings);
+	FrameSource source(
+		std::make_unique<RawlogReader>(rawlog), {std::make_shared<NoSegmenter>(), nullptr}, framesAhead, timings);
 	Collected all;
 	try
 	{
@@ -149,6 +151,7 @@ TEST_P(FrameSourceTest, CanBeLeftInTheMiddle)
 	options.degrees = 60;
 	const RecordedRun run = recordRun(folder, options);
 	StageTimings timings;
-	FrameSource source(run.rawlog, std::make_shared<NoSegmenter>(), nullptr, GetParam(), timings);
+	FrameSource source(
+		std::make_unique<RawlogReader>(run.rawlog), {std::make_shared<NoSegmenter>(), nullptr}, GetParam(), timings);
 	EXPECT_TRUE(source.next());
 }

@@ -8,7 +8,9 @@
 #include <mrpt/serialization/CArchive.h>
 #include <semloop/config/Error.h>
 #include <semloop/observations/CameraFrames.h>
+#include <semloop/observations/RawlogReader.h>
 #include <semloop/slam/Configuration.h>
+#include <semloop/slam/FrameSource.h>
 #include <semloop/slam/OtherMaps.h>
 
 #include <algorithm>
@@ -40,7 +42,7 @@ struct Room
 		logger.logging_enable_console_output = false;
 		slam = std::make_unique<SemanticSlam>(config, logger, timings);
 		FrontEnd front = makeFrontEnd(config);
-		FrameSource source(recorded.rawlog, front.segmenter, front.embedder, 2, timings);
+		FrameSource source(std::make_unique<RawlogReader>(recorded.rawlog), front, 2, timings);
 		while (auto frame = source.next()) slam->process(*frame);
 		slam->finish();
 		T_truth_world = cameraOnCircle(0) + (-slam->trajectory().front().pose);

@@ -3,7 +3,9 @@
 #include <semloop/evaluation/AssociationAccuracy.h>
 #include <semloop/evaluation/LoopEvaluation.h>
 #include <semloop/evaluation/TrajectoryError.h>
+#include <semloop/observations/RawlogReader.h>
 #include <semloop/slam/Configuration.h>
+#include <semloop/slam/FrameSource.h>
 #include <semloop/slam/RunResults.h>
 
 #include <algorithm>
@@ -32,7 +34,7 @@ std::unique_ptr<Run> mapRawlog(
 	run->logger.logging_enable_console_output = false;
 	run->slam = std::make_unique<SemanticSlam>(config, run->logger, run->timings);
 	FrontEnd front = makeFrontEnd(config);
-	FrameSource source(rawlog, front.segmenter, front.embedder, framesAhead, run->timings);
+	FrameSource source(std::make_unique<RawlogReader>(rawlog), front, framesAhead, run->timings);
 	while (auto frame = source.next()) run->slam->process(*frame);
 	run->slam->finish();
 	return run;
@@ -117,7 +119,7 @@ TEST(SemanticSlam, BehindALoopClosureTheCameraGoesOnFromItsCorrectedPose)
 	StageTimings timings;
 	SemanticSlam slam(config, logger, timings);
 	FrontEnd front = makeFrontEnd(config);
-	FrameSource source(recorded.rawlog, front.segmenter, front.embedder, 2, timings);
+	FrameSource source(std::make_unique<RawlogReader>(recorded.rawlog), front, 2, timings);
 	const auto isClosed = [&]
 	{
 		return !slam.loops().empty() &&

@@ -4,6 +4,7 @@
 
 #include <chrono>
 #include <filesystem>
+#include <utility>
 
 namespace semloop
 {
@@ -15,8 +16,6 @@ MRPT_INITIALIZER(registerRecordedSegmenter)
 {
 	mrpt::rtti::registerClass(CLASS_ID(RecordedSegmenter));
 }
-
-constexpr std::chrono::milliseconds kTolerance{1};
 
 std::string text(cv::Size size)
 {
@@ -32,6 +31,9 @@ std::string text(mrpt::Clock::time_point time)
 void RecordedSegmenterOptions::describe(OptionFields& fields)
 {
 	fields.text("file", file, "rawlog with the instances, as rawlog-segment writes it");
+	fields.number(
+		"max_time_difference", maxTimeDifference, 0, 1,
+		"of a frame and its instances [s]; a camera that plays a recording needs half a frame's time");
 }
 
 void RecordedSegmenter::configure(
@@ -54,6 +56,8 @@ void RecordedSegmenter::configure(const RecordedSegmenterOptions& options)
 			": no such file; make it with rawlog-segment, or name another rawlog with "
 			"instances");
 	reader_ = std::make_unique<RawlogReader>(options.file);
+	tolerance_ = std::chrono::duration_cast<mrpt::Clock::duration>(
+		std::chrono::duration<double>(options.maxTimeDifference));
 	next_.reset();
 	lastRead_.reset();
 	lastFrame_.reset();
@@ -92,15 +96,16 @@ CObservationInstances::Ptr RecordedSegmenter::segment(const RgbdFrame& frame)
 			text(*lastFrame_) + "; recorded instances are read in order of time");
 	lastFrame_ = frame.time;
 
-	while (!next_ || next_->timestamp < frame.time - kTolerance)
+	while (!next_ || next_->timestamp < frame.time - tolerance_)
 		if (!(next_ = readNext())) return nullptr;
-	if (next_->timestamp > frame.time + kTolerance) return nullptr;
+	if (next_->timestamp > frame.time + tolerance_) return nullptr;
 	if (next_->imageSize() != frame.color.size())
 		throw InputError(
 			reader_->path() + ": instances at " + text(next_->timestamp) + " are of an image of " +
 			text(next_->imageSize()) + ", but the frame's is " + text(frame.color.size()) +
 			"; make them from this rawlog with rawlog-segment");
-	return next_;
+	next_->timestamp = frame.time;
+	return std::exchange(next_, nullptr);
 }
 
 }  // namespace semloop

@@ -14,6 +14,7 @@
 #include <semloop/segmentation/DnnSegmenter.h>
 #include <semloop/segmentation/RecordedSegmenter.h>
 #include <semloop/slam/Configuration.h>
+#include <semloop/slam/LiveOptions.h>
 #include <semloop/slam/OtherMaps.h>
 #include <semloop/slam/SemanticSlam.h>
 
@@ -41,6 +42,8 @@ void requireSlamSections(const mrpt::config::CConfigFileBase& config)
 	auto known = configurationSections();
 	const auto maps = otherMapsSections(config);
 	known.insert(known.end(), maps.begin(), maps.end());
+	const auto sensors = sensorSections(config);
+	known.insert(known.end(), sensors.begin(), sensors.end());
 	requireKnownSections(config, known);
 }
 
@@ -69,7 +72,8 @@ const std::vector<std::string>& configurationSections()
 		"graph_matching",
 		"alignment",
 		"pose_graph",
-		"semloop_map"};
+		"semloop_map",
+		"live"};
 	return sections;
 }
 
@@ -184,6 +188,14 @@ std::string configurationReference()
 		"| key | default | allowed | meaning |\n| --- | --- | --- | --- |\n"
 		"| `<map>_count` | `0` | integer in [0, 99] | how many maps of this class, for example "
 		"`occupancyGrid_count` |\n";
+	page +=
+		"\n## Sensors\n"
+		"\n`semloop-slam --live SECTION` grabs from the sensor of this section, which is written "
+		"as "
+		"for\nrawlog-grabber: `driver` is the sensor's class, the other keys are its own "
+		"(config_ini/live_openni2.ini).\n";
+	page +=
+		table("live", "how a live run copes with what comes too fast or not at all", LiveOptions());
 	return page;
 }
 

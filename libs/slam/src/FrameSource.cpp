@@ -7,8 +7,6 @@
 #include <mutex>
 #include <utility>
 
-using mrpt::obs::CObservation3DRangeScan;
-
 namespace semloop
 {
 namespace
@@ -74,12 +72,12 @@ private:
 };
 
 FrameSource::FrameSource(
-	const std::string& rawlog, std::shared_ptr<Segmenter> segmenter,
-	std::shared_ptr<Embedder> embedder, int framesAhead, StageTimings& timings)
-	: segmenter_(std::move(segmenter)),
-	  embedder_(std::move(embedder)),
+	std::unique_ptr<ObservationSource> recording, FrontEnd frontEnd, int framesAhead,
+	StageTimings& timings)
+	: recording_(std::move(recording)),
+	  frontEnd_(std::move(frontEnd)),
 	  timings_(timings),
-	  reader_(rawlog)
+	  builder_(recording_->name(), timings)
 {
 	if (framesAhead == 0) return;
 	queue_ = std::make_unique<Queue>(std::size_t(framesAhead));
@@ -115,14 +113,14 @@ std::optional<SlamFrame> FrameSource::next()
 mrpt::obs::CObservation::Ptr FrameSource::read()
 {
 	if (readError_) std::rethrow_exception(std::exchange(readError_, nullptr));
-	return lookAhead_ ? std::exchange(lookAhead_, nullptr) : reader_.next();
+	return lookAhead_ ? std::exchange(lookAhead_, nullptr) : recording_->next();
 }
 
 void FrameSource::lookAhead()
 {
 	try
 	{
-		lookAhead_ = reader_.next();
+		lookAhead_ = recording_->next();
 	}
 	catch (...)
 	{
@@ -135,56 +133,16 @@ std::optional<SlamFrame> FrameSource::produce()
 {
 	while (const auto observation = read())
 	{
-		const auto scan = std::dynamic_pointer_cast<CObservation3DRangeScan>(observation);
-		if (!scan)
-		{
-			pendingOthers_.push_back(observation);
-			continue;
-		}
-		SlamFrame frame;
-		if (!prepare(scan, frame)) continue;
-		frame.scan = scan;
-		frame.before = std::exchange(pendingOthers_, {});
-		frame.skipped = std::exchange(pendingSkipped_, {});
-		frame.progress = reader_.progress();
+		auto frame = builder_.take(observation);
+		if (!frame) continue;
+		segment(*frame);
+		const StageTimings::Scope timing(timings_, "rectify");
+		frame->rgbd = rectifier_.rectify(frame->rgbd);
+		if (frame->instances) frame->instances = rectifier_.rectify(*frame->instances);
+		frame->progress = recording_->progress();
 		return frame;
 	}
 	return std::nullopt;
-}
-
-void FrameSource::checkTime(const CObservation3DRangeScan& scan)
-{
-	if (lastTime_ && scan.timestamp <= *lastTime_)
-		throw InputError(
-			reader_.path() + ": frame at " + formatUnixTime(scan.timestamp) +
-			": time goes backwards (the frame before is of " + formatUnixTime(*lastTime_) +
-			"); sort the rawlog by time first");
-	lastTime_ = scan.timestamp;
-}
-
-bool FrameSource::prepare(const CObservation3DRangeScan::Ptr& scan, SlamFrame& frame)
-{
-	checkTime(*scan);
-	RgbdFrame raw;
-	try
-	{
-		const StageTimings::Scope timing(timings_, "read");
-		raw = rgbdFrameFrom(*scan);
-		if (countValidDepth(raw) == 0) throw InputError("no pixel has a valid depth");
-	}
-	catch (const std::exception& e)
-	{
-		const std::string what = e.what();
-		pendingSkipped_.push_back(
-			reader_.path() + ": frame at " + formatUnixTime(scan->timestamp) +
-			" skipped: " + what.substr(0, what.find('\n')));
-		return false;
-	}
-	segment(raw, frame);
-	const StageTimings::Scope timing(timings_, "rectify");
-	frame.rgbd = rectifier_.rectify(raw);
-	if (frame.instances) frame.instances = rectifier_.rectify(*frame.instances);
-	return true;
 }
 
 void FrameSource::requireSize(const CObservationInstances& recorded, const RgbdFrame& raw) const
@@ -192,26 +150,26 @@ void FrameSource::requireSize(const CObservationInstances& recorded, const RgbdF
 	const cv::Size wanted = raw.color.size(), size = recorded.imageSize();
 	if (size == wanted) return;
 	throw InputError(
-		reader_.path() + ": instances at " + formatUnixTime(recorded.timestamp) +
+		recording_->name() + ": instances at " + formatUnixTime(recorded.timestamp) +
 		" are of an image of " + text(size) + ", but the frame's is " + text(wanted) +
 		"; make them from this rawlog with rawlog-segment");
 }
 
-void FrameSource::segment(const RgbdFrame& raw, SlamFrame& frame)
+void FrameSource::segment(SlamFrame& frame)
 {
 	const StageTimings::Scope timing(timings_, "segmentation");
 	// A rawlog into which the instances were merged has them right behind their scan.
 	lookAhead();
 	const auto recorded = std::dynamic_pointer_cast<CObservationInstances>(lookAhead_);
-	if (recorded && recorded->timestamp == raw.time)
+	if (recorded && recorded->timestamp == frame.rgbd.time)
 	{
 		lookAhead_.reset();
-		requireSize(*recorded, raw);
+		requireSize(*recorded, frame.rgbd);
 		frame.instances = recorded;
+		frontEnd_.embed(frame.rgbd, *recorded);
 	}
 	else
-		frame.instances = segmenter_->segment(raw);
-	if (frame.instances && embedder_) addEmbeddings(*embedder_, raw.color, *frame.instances);
+		frame.instances = frontEnd_.instancesOf(frame.rgbd);
 }
 
 }  // namespace semloop

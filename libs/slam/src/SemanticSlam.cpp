@@ -22,19 +22,27 @@ SemanticSlam::SemanticSlam(
 	makeMap(config);
 }
 
-void SemanticSlam::process(const SlamFrame& input)
+void SemanticSlam::process(const SlamFrame& frame)
 {
 	const StageTimings::Scope timing(timings_, "frame");
-	for (const auto& observation : input.before) observe(*observation);
+	integrate(frame, track(frame));
+}
+
+OdometryEstimate SemanticSlam::track(const SlamFrame& frame)
+{
+	const StageTimings::Scope timing(timings_, "odometry");
+	for (const auto& observation : frame.before) odometry_->observe(*observation);
+	return odometry_->track(frame.rgbd);
+}
+
+void SemanticSlam::integrate(const SlamFrame& input, const OdometryEstimate& odometry)
+{
+	const StageTimings::Scope timing(timings_, "mapping");
+	for (const auto& observation : input.before) feelGravity(*observation);
 	const RgbdFrame& frame = input.rgbd;
 	if (frameCount() == 0) placeFirstCamera(frame);
 
-	// Off-the-shelf RGB-D odometry, and the camera-camera constraint of Eq. (7).
-	OdometryEstimate odometry;
-	{
-		const StageTimings::Scope odometryTiming(timings_, "odometry");
-		odometry = odometry_->track(frame);
-	}
+	// The camera-camera constraint of Eq. (7).
 	correction_.step(odometry);
 	addCamera(frame, odometry);
 	localMap_.advance(odometry.T_previous_camera);
@@ -69,9 +77,8 @@ void SemanticSlam::process(const SlamFrame& input)
 		closeLoop(frame.time);
 }
 
-void SemanticSlam::observe(const mrpt::obs::CObservation& observation)
+void SemanticSlam::feelGravity(const mrpt::obs::CObservation& observation)
 {
-	odometry_->observe(observation);
 	const auto* imu = dynamic_cast<const mrpt::obs::CObservationIMU*>(&observation);
 	if (!imu || frameCount() > 0 || !imu->has(mrpt::obs::IMU_X_ACC)) return;
 	// At rest an accelerometer measures what holds it up.

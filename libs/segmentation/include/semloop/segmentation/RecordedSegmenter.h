@@ -13,6 +13,7 @@ namespace semloop
 struct RecordedSegmenterOptions : Options
 {
 	std::string file;
+	double maxTimeDifference = 0.001;  //!< of frame and entry [s]
 
 protected:
 	void describe(OptionFields& fields) override;
@@ -30,7 +31,7 @@ public:
 		const mrpt::config::CConfigFileBase& config, const std::string& section) override;
 	void configure(const RecordedSegmenterOptions& options);
 
-	/** The entry whose time is the frame's within a millisecond. Frames come in order of time, each
+	/** The first entry whose time is the frame's within max_time_difference, with the frame's time. Frames come in order of time, each
 	 *  at most once. Throws InputError, naming file and time, when the entry does not fit the frame's
 	 *  image, is damaged, or time goes backwards in the file or from frame to frame. */
 	CObservationInstances::Ptr segment(const RgbdFrame& frame) override;
@@ -39,6 +40,7 @@ private:
 	CObservationInstances::Ptr readNext();
 
 	std::unique_ptr<RawlogReader> reader_;
+	mrpt::Clock::duration tolerance_{};
 	CObservationInstances::Ptr next_;  //!< read, and not yet asked for
 	std::optional<mrpt::Clock::time_point> lastRead_;
 	std::optional<mrpt::Clock::time_point> lastFrame_;

@@ -25,7 +25,8 @@ struct LoopRecord
 	mrpt::Clock::time_point time;
 	std::size_t localMapSince = 0;  //!< camera node from which on the local map is
 	LoopVerdict verdict;
-	std::optional<double> driftSigmas;  //!< of the correction, see DriftPrior; when the detector accepted
+	std::optional<double>
+		driftSigmas;  //!< of the correction, see DriftPrior; when the detector accepted
 	std::vector<MatchedObjects> matched;             //!< verdict.matches in detail
 	std::optional<OptimizationReport> optimization;  //!< when accepted
 };

@@ -10,11 +10,11 @@
 #include <semloop/pose_graph/PoseGraph.h>
 #include <semloop/slam/CameraCorrection.h>
 #include <semloop/slam/DriftPrior.h>
-#include <semloop/slam/FrameSource.h>
 #include <semloop/slam/LocalMap.h>
 #include <semloop/slam/LoopCloser.h>
 #include <semloop/slam/LoopRecord.h>
 #include <semloop/slam/ObjectMapper.h>
+#include <semloop/slam/SlamFrame.h>
 #include <semloop/slam/SlamOptions.h>
 #include <semloop/slam/StageTimings.h>
 
@@ -39,7 +39,14 @@ public:
 		StageTimings& timings);
 
 	/** One frame, in order of time. */
-	void process(const SlamFrame& input);
+	void process(const SlamFrame& frame);
+	/** @name The two halves of process(): tracking may run ahead, in another thread.
+	 * @{ */
+	/** Off-the-shelf RGB-D odometry. */
+	OdometryEstimate track(const SlamFrame& frame);
+	/** The rest. A frame without instances needs no images here. */
+	void integrate(const SlamFrame& frame, const OdometryEstimate& odometry);
+	/** @} */
 	/** A last optimisation and clean-up of the map. */
 	void finish();
 
@@ -70,7 +77,7 @@ public:
 private:
 	void makeModules(const mrpt::config::CConfigFileBase& config);
 	void makeMap(const mrpt::config::CConfigFileBase& config);
-	void observe(const mrpt::obs::CObservation& observation);
+	void feelGravity(const mrpt::obs::CObservation& observation);
 	void adoptLabels(const CObservationInstances& instances);
 	void placeFirstCamera(const RgbdFrame& frame);
 	void addCamera(const RgbdFrame& frame, const OdometryEstimate& odometry);

@@ -1,0 +1,93 @@
+#include "SlamSnapshot.h"
+
+#include <algorithm>
+
+namespace semloop
+{
+namespace
+{
+constexpr std::chrono::milliseconds kBetweenMaps(300);
+constexpr std::chrono::seconds kBetweenRates(1);
+constexpr int kInverseShareOfMaps = 20;  // of the run's time
+
+std::vector<mrpt::math::TPoint3D> positions(const Trajectory& trajectory)
+{
+	std::vector<mrpt::math::TPoint3D> result;
+	result.reserve(trajectory.size());
+	for (const auto& stamped : trajectory) result.push_back(stamped.pose.translation());
+	return result;
+}
+
+void countLoops(const std::vector<LoopRecord>& loops, MapSnapshot& snapshot)
+{
+	for (const auto& loop : loops)
+	{
+		if (loop.verdict.decision != LoopVerdict::Decision::Accepted)
+		{
+			++snapshot.loopsRejected;
+			continue;
+		}
+		++snapshot.loopsAccepted;
+		snapshot.lastLoopFrame = loop.frame;
+		snapshot.lastLoop = loop.matched;
+	}
+}
+}  // namespace
+
+SlamSnapshot SnapshotTaker::take(
+	const SlamFrame* frame, const SemanticSlam& slam, const StageTimings& timings,
+	const WindowNews& news, bool withMap)
+{
+	if (frame)
+		picture_ = {frame->rgbd.color, frame->instances, frame->rgbd.camera, frame->progress};
+	SlamSnapshot snapshot;
+	snapshot.picture = picture_;
+	snapshot.frames = slam.frameCount();
+	if (snapshot.frames > 0)
+		snapshot.T_world_camera = slam.poseGraph().pose(NodeId::camera(snapshot.frames - 1));
+	snapshot.notSegmented = snapshot.frames - slam.segmentedFrameCount();
+	snapshot.lost = slam.lostFrameCount();
+	snapshot.news = news;
+
+	const auto start = Clock::now();
+	if (!withMap && start < mapDue_) return snapshot;
+	snapshot.map = takeMap(slam, timings);
+	mapDue_ = start +
+			  std::max<Clock::duration>(kBetweenMaps, kInverseShareOfMaps * (Clock::now() - start));
+	return snapshot;
+}
+
+MapSnapshot SnapshotTaker::takeMap(const SemanticSlam& slam, const StageTimings& timings)
+{
+	MapSnapshot snapshot;
+	snapshot.map = slam.map();
+	snapshot.path = positions(slam.trajectory());
+	snapshot.odometryPath = positions(slam.odometryTrajectory());
+	countLoops(slam.loops(), snapshot);
+	updateRates(slam, timings);
+	snapshot.framesPerSecond = framesPerSecond_;
+	snapshot.stages = stages_;
+	return snapshot;
+}
+
+void SnapshotTaker::updateRates(const SemanticSlam& slam, const StageTimings& timings)
+{
+	const auto now = Clock::now();
+	const double seconds = std::chrono::duration<double>(now - ratesSince_).count();
+	if (now - ratesSince_ < kBetweenRates) return;
+	auto summaries = timings.summaries();
+	for (const auto& [stage, summary] : summaries)
+	{
+		const StageTimings::Summary& then = summariesThen_[stage];
+		const double calls = double(summary.count - then.count);
+		StageRate& rate = stages_[stage];
+		rate.perSecond = calls / seconds;
+		if (calls > 0) rate.milliseconds = (summary.total - then.total) / calls;
+	}
+	framesPerSecond_ = double(slam.frameCount() - framesThen_) / seconds;
+	ratesSince_ = now;
+	framesThen_ = slam.frameCount();
+	summariesThen_ = std::move(summaries);
+}
+
+}  // namespace semloop

@@ -1,0 +1,40 @@
+#pragma once
+
+#include <semloop/slam/SlamFrame.h>
+#include <semloop/slam/StageTimings.h>
+
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace semloop
+{
+/** Makes frames of observations, one observation after the other.
+ *
+ *  A frame that cannot be used (image missing or unreadable, sizes that do not fit, no valid depth)
+ *  is skipped and told in SlamFrame::skipped of the next one. */
+class FrameBuilder
+{
+public:
+	/** The source's name is for messages. */
+	FrameBuilder(std::string source, StageTimings& timings);
+
+	/** A frame, neither segmented nor rectified, when the observation is an RGB-D scan that can be
+	 *  used. Throws InputError when time goes backwards. */
+	std::optional<SlamFrame> take(const mrpt::obs::CObservation::Ptr& observation);
+	/** Warnings about frames behind the last good one. */
+	const std::vector<std::string>& skippedSince() const { return skipped_; }
+
+private:
+	void checkTime(const mrpt::obs::CObservation3DRangeScan& scan);
+	/** Empty: the frame is to be skipped; why is in skipped_. */
+	std::optional<RgbdFrame> imagesOf(const mrpt::obs::CObservation3DRangeScan& scan);
+
+	std::string source_;
+	StageTimings& timings_;
+	std::vector<mrpt::obs::CObservation::Ptr> others_;
+	std::vector<std::string> skipped_;
+	std::optional<mrpt::Clock::time_point> lastTime_;
+};
+
+}  // namespace semloop
