@@ -62,7 +62,7 @@ install: build ## installs into PREFIX (/usr/local)
 
 format: ## formats all C++ files as .clang-format says
 	@scripts/install-dependencies.sh clang-format
-	find libs apps rawlog_tools tests benchmarks \( -name '*.h' -o -name '*.cpp' \) -print0 | \
+	find libs apps rawlog_tools tests benchmarks doc/examples \( -name '*.h' -o -name '*.cpp' \) -print0 | \
 		xargs -0 clang-format -i
 
 clean: ## removes build/ and build-sanitize/

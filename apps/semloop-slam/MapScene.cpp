@@ -4,6 +4,7 @@
 #include <mrpt/opengl/CSetOfLines.h>
 #include <mrpt/opengl/CSphere.h>
 #include <mrpt/opengl/CText.h>
+#include <semloop/object_map/MeshVisualization.h>
 #include <semloop/observations/CameraFrames.h>
 
 #include <algorithm>
@@ -21,20 +22,6 @@ const TColor kPath(0, 90, 200), kOdometryPath(150, 150, 150), kLoop(230, 110, 0)
 constexpr float kAmbient = 0.5f;         // share of the light
 constexpr float kFloorHalfSize = 10.0f;  // [m]
 constexpr float kCameraLength = 0.35f;   // of the drawn pyramid [m]
-
-std::vector<TTriangle> trianglesOf(const TriangleMesh& mesh)
-{
-	std::vector<TTriangle> result(mesh.triangles.size());
-	for (std::size_t i = 0; i < result.size(); ++i)
-		for (std::size_t corner = 0; corner < 3; ++corner)
-		{
-			const SurfacePoint& vertex = mesh.vertices[mesh.triangles[i][corner]];
-			result[i].vertices[corner].xyzrgba.pt = vertex.position;
-			result[i].vertices[corner].normal = vertex.normal;
-			result[i].vertices[corner].setColor(vertex.color);
-		}
-	return result;
-}
 
 /** Dots along the way, too: the window's lines are one pixel wide at most. */
 CSetOfLines::Ptr pathLine(
@@ -66,7 +53,8 @@ float fieldOfView(double pixels, double focalLength)
 
 MapScene::MapScene(COpenGLViewport& view)
 	: floor_(CGridPlaneXY::Create(
-		  -kFloorHalfSize, kFloorHalfSize, -kFloorHalfSize, kFloorHalfSize, 0.0f, 1.0f)),
+		  -kFloorHalfSize, kFloorHalfSize, -kFloorHalfSize, kFloorHalfSize, 0.0f, 1.0f, 1.0f,
+		  false)),
 	  surfaceSet_(CSetOfObjects::Create()),
 	  paths_(CSetOfObjects::Create()),
 	  names_(CSetOfObjects::Create()),
@@ -143,11 +131,9 @@ bool MapScene::meshFor(std::chrono::milliseconds time)
 		if (found == surfaces_.end()) continue;  // it is gone
 		Surface& surface = found->second;
 		surface.isWaiting = false;
-		const auto triangles = trianglesOf(surface.volume->mesh());
 		// A new one: MRPT leaves out what was out of sight with the size that it had first.
 		if (surface.mesh) surfaceSet_->removeObject(surface.mesh);
-		surface.mesh = CSetOfTriangles::Create();
-		surface.mesh->insertTriangles(triangles.begin(), triangles.end());
+		surface.mesh = trianglesOf(surface.volume->mesh());
 		surface.mesh->setPose(surface.pose);
 		surfaceSet_->insert(surface.mesh);
 		if (std::chrono::steady_clock::now() >= end) break;

@@ -75,19 +75,19 @@ void SnapshotTaker::updateRates(const SemanticSlam& slam, const StageTimings& ti
 	const auto now = Clock::now();
 	const double seconds = std::chrono::duration<double>(now - ratesSince_).count();
 	if (now - ratesSince_ < kBetweenRates) return;
-	auto summaries = timings.summaries();
-	for (const auto& [stage, summary] : summaries)
+	auto totals = timings.totals();
+	for (const auto& [stage, total] : totals)
 	{
-		const StageTimings::Summary& then = summariesThen_[stage];
-		const double calls = double(summary.count - then.count);
+		const StageTimings::Total& then = totalsThen_[stage];
+		const double calls = double(total.count - then.count);
 		StageRate& rate = stages_[stage];
 		rate.perSecond = calls / seconds;
-		if (calls > 0) rate.milliseconds = (summary.total - then.total) / calls;
+		if (calls > 0) rate.milliseconds = (total.milliseconds - then.milliseconds) / calls;
 	}
 	framesPerSecond_ = double(slam.frameCount() - framesThen_) / seconds;
 	ratesSince_ = now;
 	framesThen_ = slam.frameCount();
-	summariesThen_ = std::move(summaries);
+	totalsThen_ = std::move(totals);
 }
 
 }  // namespace semloop

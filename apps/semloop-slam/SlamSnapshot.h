@@ -84,7 +84,7 @@ private:
 	Clock::time_point mapDue_ = Clock::now();
 	Clock::time_point ratesSince_ = mapDue_;
 	std::size_t framesThen_ = 0;
-	std::map<std::string, StageTimings::Summary> summariesThen_;
+	std::map<std::string, StageTimings::Total> totalsThen_;
 	double framesPerSecond_ = 0.0;
 	std::map<std::string, StageRate> stages_;
 };

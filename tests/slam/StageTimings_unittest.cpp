@@ -18,6 +18,16 @@ TEST(StageTimings, SummarisesByTheNearestRankRule)
 	EXPECT_DOUBLE_EQ(s.max, 100);
 }
 
+TEST(StageTimings, TotalsAreCountAndSum)
+{
+	StageTimings timings;
+	for (int i = 100; i >= 1; --i) timings.add("fusion", i);
+	timings.add("read", 2.5);
+	EXPECT_EQ(timings.totals().size(), 2u);
+	EXPECT_EQ(timings.totals().at("fusion").count, 100u);
+	EXPECT_DOUBLE_EQ(timings.totals().at("fusion").milliseconds, 5050);
+}
+
 TEST(StageTimings, OneSampleIsEveryPercentile)
 {
 	StageTimings timings;

@@ -1,9 +1,9 @@
 #include <mrpt/opengl/CBox.h>
 #include <mrpt/opengl/CSetOfLines.h>
 #include <mrpt/opengl/CSetOfObjects.h>
-#include <mrpt/opengl/CSetOfTriangles.h>
 #include <mrpt/opengl/CText.h>
 #include <semloop/object_map/CObjectMap.h>
+#include <semloop/object_map/MeshVisualization.h>
 
 #include <sstream>
 
@@ -13,27 +13,6 @@ MAP_DEFINITION_REGISTER("objectMap,semloop::CObjectMap", semloop::CObjectMap)
 
 namespace
 {
-mrpt::opengl::CSetOfTriangles::Ptr trianglesOf(const TriangleMesh& mesh)
-{
-	auto triangles = mrpt::opengl::CSetOfTriangles::Create();
-	std::vector<mrpt::opengl::TTriangle> all;
-	all.reserve(mesh.triangles.size());
-	for (const auto& corners : mesh.triangles)
-	{
-		mrpt::opengl::TTriangle triangle;
-		for (std::size_t i = 0; i < 3; ++i)
-		{
-			const SurfacePoint& vertex = mesh.vertices[corners[i]];
-			triangle.vertices[i].xyzrgba.pt = vertex.position;
-			triangle.vertices[i].normal = vertex.normal;
-			triangle.vertices[i].setColor(vertex.color);
-		}
-		all.push_back(triangle);
-	}
-	triangles->insertTriangles(all.begin(), all.end());
-	return triangles;
-}
-
 mrpt::opengl::CBox::Ptr frameOf(const mrpt::math::TBoundingBox& box)
 {
 	auto frame = mrpt::opengl::CBox::Create(box.min, box.max, true, 1.0f);

@@ -20,6 +20,8 @@
 #include <utility>
 #include <vector>
 
+#include "UnplugListener.h"
+
 using mrpt::hwdrivers::CGenericSensor;
 using mrpt::obs::CObservation;
 
@@ -33,6 +35,8 @@ using Seconds = std::chrono::duration<double>;
 // Inertial units and the like come faster than frames, and weigh nothing.
 constexpr std::size_t kOthersPerFrame = 100;
 constexpr std::chrono::seconds kPatienceWithDriver{2};
+// Who is told that a camera was unplugged may be before its last frame.
+constexpr std::chrono::milliseconds kPatienceForLastFrame{300};
 
 CGenericSensor::Ptr makeSensor(
 	const mrpt::config::CConfigFileBase& config, const std::string& section)
@@ -119,11 +123,18 @@ struct SensorSource::Channel
 	SensorCounts counts;
 	SteadyClock::time_point lastGrab = SteadyClock::now();
 	std::atomic<bool> stopped{false};
-	bool finished = false;  //!< there will be no more
+	bool ended = false;  //!< there will be no more than what it is at
+	SteadyClock::time_point endedAt;
+	bool returned = false;  //!< from the driver: the thread is at its end
 	std::exception_ptr error;
 
 	void run();
 	void grabAll();
+	void end(std::exception_ptr why);
+	bool isOver() const
+	{
+		return ended && (returned || SteadyClock::now() - endedAt > kPatienceForLastFrame);
+	}
 	void push(const CObservation::Ptr& observation);
 	void waitForNextTurn(SteadyClock::time_point turn, bool idle) const;
 };
@@ -144,9 +155,18 @@ void SensorSource::Channel::run()
 		failure = std::make_exception_ptr(InputError(name + ": " + exceptionMessage(e)));
 	}
 	sensor.reset();
+	end(std::move(failure));
 	const std::lock_guard lock(mutex);
-	error = std::move(failure);
-	finished = true;
+	returned = true;
+	changed.notify_all();
+}
+
+void SensorSource::Channel::end(std::exception_ptr why)
+{
+	const std::lock_guard lock(mutex);
+	if (std::exchange(ended, true)) return;
+	endedAt = SteadyClock::now();
+	error = std::move(why);
 	changed.notify_all();
 }
 
@@ -154,6 +174,9 @@ void SensorSource::Channel::grabAll()
 {
 	sensor->initialize();
 	requireDevice(sensor, name);
+	const auto listener = UnplugListener::listenFor(
+		*sensor,
+		[this] { end(std::make_exception_ptr(InputError(name + ": the camera was unplugged"))); });
 	const auto* recorded = dynamic_cast<const RecordedSensor*>(sensor.get());
 	while (!stopped)
 	{
@@ -242,7 +265,7 @@ void SensorSource::stop()
 bool SensorSource::isStuck(std::chrono::milliseconds patience) const
 {
 	std::unique_lock lock(channel_->mutex);
-	return !channel_->changed.wait_for(lock, patience, [&] { return channel_->finished; });
+	return !channel_->changed.wait_for(lock, patience, [&] { return channel_->returned; });
 }
 
 SensorCounts SensorSource::counts() const
@@ -256,7 +279,7 @@ CObservation::Ptr SensorSource::next()
 	Channel& channel = *channel_;
 	std::unique_lock lock(channel.mutex);
 	const auto hasNews = [&]
-	{ return !channel.queue.empty() || channel.finished || channel.stopped; };
+	{ return !channel.queue.empty() || channel.isOver() || channel.stopped; };
 	while (!channel.changed.wait_for(lock, Seconds(0.1), hasNews))
 		noteSilence(SteadyClock::now() - channel.lastGrab);
 	if (std::exchange(silent_, false) && !channel.queue.empty()) report_(name_ + ": frames again");

@@ -29,6 +29,15 @@ void StageTimings::add(const std::string& stage, double milliseconds)
 {
 	const std::lock_guard lock(mutex_);
 	samples_[stage].push_back(float(milliseconds));
+	Total& total = totals_[stage];
+	++total.count;
+	total.milliseconds += milliseconds;
+}
+
+std::map<std::string, StageTimings::Total> StageTimings::totals() const
+{
+	const std::lock_guard lock(mutex_);
+	return totals_;
 }
 
 std::map<std::string, StageTimings::Summary> StageTimings::summaries() const

@@ -12,6 +12,11 @@ namespace semloop
 class StageTimings
 {
 public:
+	struct Total
+	{
+		std::size_t count = 0;
+		double milliseconds = 0.0;
+	};
 	/** Milliseconds. */
 	struct Summary
 	{
@@ -38,7 +43,9 @@ public:
 	};
 
 	void add(const std::string& stage, double milliseconds);
-	/** By stage name. Percentiles by the nearest-rank rule. */
+	/** By stage name. */
+	std::map<std::string, Total> totals() const;
+	/** Same, sorting all samples. Percentiles by the nearest-rank rule. */
 	std::map<std::string, Summary> summaries() const;
 	/** stage,count,mean_ms,p50_ms,p95_ms,max_ms; throws InputError when the file cannot be written. */
 	void writeCsv(const std::string& path) const;
@@ -46,6 +53,7 @@ public:
 private:
 	mutable std::mutex mutex_;
 	std::map<std::string, std::vector<float>> samples_;
+	std::map<std::string, Total> totals_;
 };
 
 }  // namespace semloop
