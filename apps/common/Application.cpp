@@ -3,6 +3,8 @@
 #include <semloop/config/Error.h>
 #include <semloop/config/ExceptionMessage.h>
 
+#include <cstdio>
+#include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <iostream>
@@ -55,6 +57,14 @@ bool parseArguments(TCLAP::CmdLine& commandLine, int argc, char** argv)
 	delete commandLine.getOutput();  // TCLAP forgets its own when another one is set
 	commandLine.setOutput(&output);
 	return commandLine.parse(argc, const_cast<const char**>(argv));
+}
+
+void leaveAtOnce(int exitCode)
+{
+	std::cout.flush();
+	std::cerr.flush();
+	std::fflush(nullptr);
+	std::_Exit(exitCode);
 }
 
 void requireFile(const std::string& path, const std::string& remedy)

@@ -23,6 +23,9 @@ int runApplication(const std::string& name, const std::function<int()>& body);
  *  done. Throws UsageError, with TCLAP's explanation, on wrong arguments. */
 bool parseArguments(TCLAP::CmdLine& commandLine, int argc, char** argv);
 
+/** Ends the process with no destructor, for when a thread that cannot be ended uses what they destroy. */
+[[noreturn]] void leaveAtOnce(int exitCode);
+
 /** Throws InputError, with the remedy, when a file to read is not there. */
 void requireFile(const std::string& path, const std::string& remedy);
 

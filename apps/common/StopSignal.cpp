@@ -20,6 +20,8 @@ void catchStopSignal()
 {
 	std::signal(SIGINT, onSignal);
 	std::signal(SIGTERM, onSignal);
+	// A terminal that was closed; nohup wants it ignored.
+	if (std::signal(SIGHUP, onSignal) == SIG_IGN) std::signal(SIGHUP, SIG_IGN);
 }
 
 bool stopRequested()

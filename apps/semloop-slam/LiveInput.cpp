@@ -1,13 +1,9 @@
 #include "LiveInput.h"
 
-#include <semloop/config/Error.h>
 #include <semloop/config/ExceptionMessage.h>
 #include <semloop/slam/LiveFrames.h>
 
 #include <chrono>
-#include <cstdio>
-#include <cstdlib>
-#include <iostream>
 
 namespace semloop
 {
@@ -16,44 +12,43 @@ LiveInput::LiveInput(
 	const std::string& record)
 {
 	options_.loadFromConfigFile(config, "live");
+	const auto report = [news = news_](const std::string& line) { news->add(line); };
 	SensorSource::Tap tap;
 	if (!record.empty())
 	{
-		recorder_ = std::make_shared<SensorRecorder>(record);
+		recorder_ = std::make_shared<SensorRecorder>(record, report);
 		tap = [recorder = recorder_](const mrpt::obs::CObservation::Ptr& observation)
 		{ recorder->write(observation); };
 	}
-	sensor_ = std::make_unique<SensorSource>(
-		config, section, options_, tap, [this](const std::string& line) { news_.add(line); });
+	sensor_ = std::make_unique<SensorSource>(config, section, options_, tap, report);
 }
 
 std::string LiveInput::run(
-	MappingLoop& loop, const FrontEnd& frontEnd, SemanticSlam& slam, StageTimings& timings)
+	MappingLoop& loop, const FrontEnd& frontEnd, SemanticSlam& slam, StageTimings& timings,
+	RunInfo& info)
 {
 	std::string failure;
 	{
 		LiveFrames frames(*sensor_, frontEnd, slam, options_, timings);
-		failure = loop.run(frames, *sensor_, news_);
+		failure = loop.run(frames, *sensor_, *news_);
 	}
+	if (!recorder_) return failure;
 	try
 	{
-		if (recorder_) recorder_->close();
+		recorder_->close();
 	}
-	catch (const InputError& e)
+	catch (const std::exception& e)
 	{
 		failure += (failure.empty() ? "" : "; and ") + exceptionMessage(e);
 	}
+	info.live->recorder = recorder_->counts();
 	return failure;
 }
 
-void LiveInput::leaveIfStuck(int exitCode) const
+bool LiveInput::isStuck() const
 {
 	using namespace std::chrono_literals;
-	if (!sensor_->isStuck(2s)) return;
-	std::cout.flush();
-	std::cerr.flush();
-	std::fflush(nullptr);
-	std::_Exit(exitCode);
+	return sensor_->isStuck(2s);
 }
 
 }  // namespace semloop

@@ -24,14 +24,15 @@ public:
 	const SensorSource& sensor() const { return *sensor_; }
 	/** What ended the run early because of bad input, or spoiled the recording; empty otherwise. */
 	std::string run(
-		MappingLoop& loop, const FrontEnd& frontEnd, SemanticSlam& slam, StageTimings& timings);
-	/** Ends the process when the sensor's driver does not return: no destructor may run under it. */
-	void leaveIfStuck(int exitCode) const;
+		MappingLoop& loop, const FrontEnd& frontEnd, SemanticSlam& slam, StageTimings& timings,
+		RunInfo& info);
+	/** The sensor's driver does not return: no destructor may run under it (leaveAtOnce). */
+	bool isStuck() const;
 
 private:
 	LiveOptions options_;
 	std::shared_ptr<SensorRecorder> recorder_;
-	News news_;
+	std::shared_ptr<News> news_ = std::make_shared<News>();
 	std::unique_ptr<SensorSource> sensor_;
 };
 

@@ -17,6 +17,7 @@ namespace
 {
 // How soon a live run notices Ctrl-C.
 constexpr std::chrono::milliseconds kPatience{100};
+constexpr std::size_t kMostWarnings = 100;
 }  // namespace
 
 const char* const kEndedByUser = "Ctrl-C";
@@ -51,10 +52,10 @@ std::string MappingLoop::run(FrameSource& recording)
 
 bool MappingLoop::wantsMore()
 {
-	if (stopRequested())
-		info_.endedBy = kEndedByUser;
-	else if (maxFrames_ > 0 && slam_.frameCount() >= maxFrames_)
+	if (maxFrames_ > 0 && slam_.frameCount() >= maxFrames_)
 		info_.endedBy = "--max-frames";
+	else if (stopRequested())
+		info_.endedBy = kEndedByUser;
 	else
 		return true;
 	return false;
@@ -88,25 +89,19 @@ std::string MappingLoop::run(LiveFrames& frames, SensorSource& sensor, News& new
 	{
 		failure = info_.endedBy = exceptionMessage(e);
 	}
-	warn(frames.skippedAtEnd());
+	warn(frames.takeSkipped());
 	info_.live = countsOf(frames, sensor);
 	return failure;
 }
 
 bool MappingLoop::mapNext(LiveFrames& frames, SensorSource& sensor, News& news)
 {
-	if (!wantsMore())
-	{
-		if (!stopRequested()) return false;
-		sensor.stop();  // what it has given is still to be mapped
-	}
+	if (!wantsMore() && info_.endedBy != kEndedByUser) return false;
+	if (stopRequested()) sensor.stop();  // what it has given is still to be mapped
 	tell(news);
+	warn(frames.takeSkipped());
 	const auto tracked = frames.next(kPatience);
-	if (tracked)
-	{
-		warn(tracked->frame.skipped);
-		slam_.integrate(tracked->frame, tracked->odometry);
-	}
+	if (tracked) slam_.integrate(tracked->frame, tracked->odometry);
 	const LiveCounts counts = countsOf(frames, sensor);
 	bar_.updateEndless(
 		slam_.frameCount(),
@@ -116,10 +111,12 @@ bool MappingLoop::mapNext(LiveFrames& frames, SensorSource& sensor, News& news)
 	{
 		const WindowNews shown{counts.sensor.dropped, sensorNews_};
 		if (tracked)
+		{
 			window_->show(tracked->frame, slam_, timings_, shown);
+			window_->waitWhilePaused();
+		}
 		else
 			window_->show(slam_, timings_, shown);
-		window_->waitWhilePaused();
 	}
 	return tracked || !frames.hasEnded();
 }
@@ -136,16 +133,19 @@ void MappingLoop::tell(News& news)
 
 LiveCounts MappingLoop::countsOf(const LiveFrames& frames, const SensorSource& sensor) const
 {
-	return {sensor.counts(), frames.unsegmented()};
+	return {sensor.counts(), frames.unsegmented(), {}};
 }
 
 void MappingLoop::warn(const std::vector<std::string>& warnings)
 {
 	for (const auto& warning : warnings)
 	{
+		if (++info_.skippedFrames > kMostWarnings) continue;
 		bar_.clear();
 		std::cerr << "semloop-slam: warning: " << warning << "\n";
-		info_.skippedFrames.push_back(warning);
+		info_.warnings.push_back(warning);
+		if (info_.skippedFrames == kMostWarnings)
+			std::cerr << "semloop-slam: further frames that are skipped are only counted\n";
 	}
 }
 

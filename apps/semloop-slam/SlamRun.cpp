@@ -2,13 +2,17 @@
 
 #include <mrpt/config/CConfigFile.h>
 #include <semloop/config/Error.h>
+#include <semloop/config/ExceptionMessage.h>
 #include <semloop/observations/RawlogReader.h>
+#include <semloop/observations/RawlogWriter.h>
 #include <semloop/slam/Configuration.h>
 #include <semloop/slam/OtherMaps.h>
 #include <semloop/slam/RunResults.h>
 
 #include <chrono>
 #include <cstdio>
+#include <filesystem>
+#include <functional>
 #include <iostream>
 #include <memory>
 
@@ -72,7 +76,7 @@ void printSummary(const SlamRunArguments& arguments, const SemanticSlam& slam, c
 		accepted += record.verdict.decision == LoopVerdict::Decision::Accepted;
 	std::printf(
 		"%zu frames (%zu skipped, %zu lost) in %.1f s, %zu objects, %zu loops closed: %s\n",
-		slam.frameCount(), info.skippedFrames.size(), slam.lostFrameCount(), info.wallSeconds,
+		slam.frameCount(), info.skippedFrames, slam.lostFrameCount(), info.wallSeconds,
 		slam.map().objects().size(), accepted, arguments.output.c_str());
 }
 
@@ -81,24 +85,48 @@ void printWarning(const std::string& warning)
 	std::cerr << "semloop-slam: warning: " << warning << "\n";
 }
 
-/** Tells how it ended; the exit code. */
+/** Writes the results and tells how it ended; the exit code. A sensor without any frame
+ *  leaves those of an earlier run alone. */
 int conclude(
 	const SlamRunArguments& arguments, const SemanticSlam& slam, const RunInfo& info,
-	std::string failure)
+	std::string failure, const std::function<void()>& writeResults)
 {
 	const bool stopped = info.endedBy == kEndedByUser;
-	const std::string where = "; results so far are in " + arguments.output;
-	if (failure.empty() && slam.frameCount() > 0 && slam.segmentedFrameCount() == 0)
+	const bool hasFrames = slam.frameCount() > 0, hasResults = hasFrames || !info.live;
+	std::string where;
+	try
+	{
+		if (hasResults) writeResults();
+		if (hasResults) where = "; results so far are in " + arguments.output;
+	}
+	catch (const std::exception& e)
+	{
+		failure += (failure.empty() ? "" : "; and ") + exceptionMessage(e);
+	}
+	if (failure.empty() && hasFrames && slam.segmentedFrameCount() == 0)
 		printWarning(
-			"no frame has instances, so there are no objects and no loops; were they made from "
-			"this rawlog?");
+			"no frame has instances, so there are no objects and no loops; " +
+			std::string(
+				info.live ? "did the network see nothing, or have no time?"
+						  : "were they made from this rawlog?"));
 	if (stopped) std::cerr << "semloop-slam: stopped by Ctrl-C" << where << "\n";
-	if (failure.empty() && slam.frameCount() == 0 && !stopped)
+	if (failure.empty() && !hasFrames && (!stopped || info.skippedFrames > 0))
 		failure = info.rawlog +
 				  ": no usable RGB-D frame (CObservation3DRangeScan with colour and depth) in it";
 	if (failure.empty()) return kSuccess;
 	std::cerr << "semloop-slam: " << failure << where << "\n";
 	return kFailed;
+}
+
+/** A recording cannot be made again. */
+void requireNewRawlog(const std::string& path)
+{
+	if (std::filesystem::path(path).extension() != ".rawlog")
+		throw UsageError("--record " + path + ": give a name that ends in .rawlog");
+	for (const std::string& file : {path, RawlogWriter::partialPath(path)})
+		if (std::filesystem::exists(file))
+			throw UsageError(
+				"--record: " + file + " is there already; remove it or choose another name");
 }
 
 void requireArguments(const SlamRunArguments& arguments)
@@ -110,6 +138,7 @@ void requireArguments(const SlamRunArguments& arguments)
 	if (!isLive) requireArgument(arguments.rawlog, "-i", "the rawlog, or --live for a sensor");
 	if (!isLive && !arguments.record.empty())
 		throw UsageError("--record needs --live: it keeps what a sensor gives");
+	if (!arguments.record.empty()) requireNewRawlog(arguments.record);
 	requireArgument(arguments.output, "-o", "the folder for the results");
 	requireFile(arguments.config, "config_ini/ has examples");
 	if (!isLive) requireFile(arguments.rawlog, "make one with tum2rawlog or rawlog-grabber");
@@ -153,18 +182,22 @@ int runSlam(const SlamRunArguments& arguments)
 		live = std::make_unique<LiveInput>(config, arguments.sensor, arguments.record);
 		info.rawlog = live->sensor().name();
 		info.endedBy = "end of the recording";
-		failure = live->run(loop, frontEnd, slam, timings);
+		failure = live->run(loop, frontEnd, slam, timings, info);
 	}
 	bar.clear();
-	window.reset();
 	slam.finish();
+	if (window) window->show(slam, timings, {});
 	info.wallSeconds =
 		std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-	writeRunResults(arguments.output, slam, info, timings);
-	writeOtherMaps(arguments.output + "/maps", otherMaps.names(), *otherMaps.build(slam));
-	printSummary(arguments, slam, info);
-	const int code = conclude(arguments, slam, info, failure);
-	if (live) live->leaveIfStuck(code);
+	const int code = conclude(
+		arguments, slam, info, failure,
+		[&]
+		{
+			writeRunResults(arguments.output, slam, info, timings);
+			writeOtherMaps(arguments.output + "/maps", otherMaps.names(), *otherMaps.build(slam));
+			printSummary(arguments, slam, info);
+		});
+	if ((live && live->isStuck()) || (window && window->isLost())) leaveAtOnce(code);
 	return code;
 }
 

@@ -38,7 +38,8 @@ SlamSnapshot SnapshotTaker::take(
 	const SlamFrame* frame, const SemanticSlam& slam, const StageTimings& timings,
 	const WindowNews& news, bool withMap)
 {
-	if (frame)
+	// A frame that was tracked only has no image any more.
+	if (frame && !frame->rgbd.color.empty())
 		picture_ = {frame->rgbd.color, frame->instances, frame->rgbd.camera, frame->progress};
 	SlamSnapshot snapshot;
 	snapshot.picture = picture_;

@@ -30,14 +30,30 @@ SlamWindow::SlamWindow(const std::string& title)
 SlamWindow::~SlamWindow()
 {
 	leave_ = true;
-	thread_.join();
+	std::unique_lock lock(mutex_);
+	left_.wait(lock, [&] { return hasLeft_ || isLost_; });
+	lock.unlock();
+	if (isLost_)
+		thread_.detach();  // it stays where Xlib found out, for ever
+	else
+		thread_.join();
+}
+
+void SlamWindow::noteLost()
+{
+	std::cerr << "semloop-slam: warning: the display is gone; the run goes on without window\n";
+	open_ = false;
+	control_.release();
+	const std::lock_guard lock(mutex_);
+	isLost_ = true;
+	left_.notify_all();
 }
 
 void SlamWindow::run(const std::string& title, std::promise<void> opened)
 {
 	try
 	{
-		WindowView view(title, control_);
+		WindowView view(title, control_, [this] { noteLost(); });
 		open_ = true;
 		opened.set_value();
 		while (!leave_ && view.isOpen())
@@ -55,6 +71,9 @@ void SlamWindow::run(const std::string& title, std::promise<void> opened)
 	}
 	open_ = false;
 	control_.release();
+	const std::lock_guard lock(mutex_);
+	hasLeft_ = true;
+	left_.notify_all();
 }
 
 void SlamWindow::show(

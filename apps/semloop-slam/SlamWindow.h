@@ -1,6 +1,7 @@
 #pragma once
 
 #include <atomic>
+#include <condition_variable>
 #include <future>
 #include <mutex>
 #include <optional>
@@ -19,7 +20,7 @@ class SlamWindow
 public:
 	/** Opens it; throws InputError when there is no display or no OpenGL 3.3. */
 	explicit SlamWindow(const std::string& title);
-	/** Closes it. */
+	/** Closes it. A display that is gone, before or now, ends the window, not the run. */
 	~SlamWindow();
 	SlamWindow(const SlamWindow&) = delete;
 	SlamWindow& operator=(const SlamWindow&) = delete;
@@ -42,9 +43,12 @@ public:
 	void waitWhilePaused() { control_.waitWhilePaused(); }
 	/** False once the user has closed it: the run goes on without it. */
 	bool isOpen() const { return open_; }
+	/** The display is gone: a thread stays behind that no destructor may disturb (leaveAtOnce). */
+	bool isLost() const { return isLost_; }
 
 private:
 	void run(const std::string& title, std::promise<void> opened);
+	void noteLost();
 	void show(
 		const SlamFrame* frame, const SemanticSlam& slam, const StageTimings& timings,
 		const WindowNews& news);
@@ -52,9 +56,11 @@ private:
 
 	RunControl control_;
 	SnapshotTaker taker_;
-	std::atomic<bool> open_{false}, leave_{false};
+	std::atomic<bool> open_{false}, leave_{false}, isLost_{false};
 	std::mutex mutex_;  //!< of what follows
 	std::optional<SlamSnapshot> news_;
+	bool hasLeft_ = false;
+	std::condition_variable left_;
 	std::thread thread_;
 };
 

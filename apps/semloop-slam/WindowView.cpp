@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace semloop
 {
@@ -30,8 +31,8 @@ constexpr std::chrono::milliseconds kLongestWithoutDrawing(500);  // tooltips co
 constexpr int kIdlePerDrawing = 2;  // leaves most of a processor to the run where drawing is slow
 }  // namespace
 
-WindowView::WindowView(const std::string& title, RunControl& control)
-	: control_(control), window_(title, kWidth, kHeight)
+WindowView::WindowView(const std::string& title, RunControl& control, std::function<void()> onLost)
+	: glfw_(std::move(onLost)), control_(control), window_(title, kWidth, kHeight)
 {
 	window_.background_scene = mrpt::opengl::COpenGLScene::Create();
 	scene_.emplace(*window_.background_scene->getViewport());

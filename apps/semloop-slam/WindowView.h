@@ -4,6 +4,7 @@
 
 #include <array>
 #include <chrono>
+#include <functional>
 #include <optional>
 #include <string>
 
@@ -19,8 +20,8 @@ namespace semloop
 class WindowView
 {
 public:
-	/** Throws std::runtime_error when it cannot be opened. */
-	WindowView(const std::string& title, RunControl& control);
+	/** Throws std::runtime_error when it cannot be opened; onLost as in GlfwSession. */
+	WindowView(const std::string& title, RunControl& control, std::function<void()> onLost);
 
 	/** False once the user has closed it. */
 	bool isOpen();

@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # Runs a program on a display of its own, which ends with the program. In FOLDER, Xvfb_screen0 is what is
-# on the screen (X window dump), and display is the display's name. Exit code 77: Xvfb is not installed.
+# on the screen (X window dump), display is the display's name, server the process to kill. Exit code 77: Xvfb is not installed.
 #
 #   on_xvfb.sh FOLDER PROGRAM [ARGUMENT...]
 set -euo pipefail
@@ -13,6 +13,7 @@ command -v Xvfb > /dev/null || { echo "Xvfb is not installed"; exit 77; }
 mkfifo "$folder/number"
 timeout 180 Xvfb -displayfd 3 -screen 0 1280x960x24 -fbdir "$folder" -nolisten tcp -terminate \
   3> "$folder/number" > /dev/null 2>&1 &
+echo $! > "$folder/server"
 read -r number < "$folder/number"
 echo ":$number" > "$folder/display"
 export DISPLAY=:$number

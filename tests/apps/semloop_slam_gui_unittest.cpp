@@ -200,3 +200,19 @@ TEST_F(SemloopSlamFixture, WithoutADisplayTheGuiSaysInOneLineWhatToDo)
 	EXPECT_THAT(messages(), HasSubstr("DISPLAY"));
 	EXPECT_EQ(messageLines(), 1u);
 }
+
+TEST_F(SemloopSlamGui, ADisplayThatIsGoneEndsTheWindowAndNotTheRun)
+{
+	constexpr int kFrame = 12;
+	start({kFrame});
+	waitAt(kFrame);
+	waitUntilShown(kFrame - 1);
+	const auto killed = shell("kill $(cat screen/server)", folder_.path());
+	ASSERT_EQ(killed.code, 0) << killed.err;
+	waitUntil(
+		"the window has noticed it",
+		[&] { return messages().find("the display is gone") != std::string::npos; });
+	letGoOn(kFrame);
+	EXPECT_EQ(program_->exitCode(), 0) << messages();
+	EXPECT_EQ(summary()["frames"], recorded_.frames);
+}

@@ -1,3 +1,4 @@
+#include <filesystem>
 #include <fstream>
 
 #include "../openni2/VirtualCameraFolder.h"
@@ -93,9 +94,11 @@ TEST_F(SemloopSlamLive, MapsWhatTheCameraSeesAndRecordsIt)
 	EXPECT_EQ(json["live"]["observations_dropped"], 0);
 	EXPECT_EQ(json["live"]["frames_unsegmented"], 0);
 	EXPECT_GE(json["live"]["observations_grabbed"], 25);
+	EXPECT_EQ(json["live"]["observations_not_recorded"], 0);
 
 	const auto kept = scansOf(folder_.file("kept.rawlog")), given = scansOf(recorded_.rawlog);
 	ASSERT_GE(kept.size(), 25u);
+	EXPECT_EQ(json["live"]["observations_recorded"], kept.size());
 	for (std::size_t i = 0; i < kept.size(); ++i)
 	{
 		const auto seen = kept[i]->rangeImage.asEigen(), shown = given[i]->rangeImage.asEigen();
@@ -168,7 +171,9 @@ TEST_F(SemloopSlamLive, WithoutACameraItSaysSo)
 	EXPECT_EQ(result.code, 1);
 	EXPECT_THAT(result.err, HasSubstr("[sensor] COpenNI2Sensor: no OpenNI2 device; plug one in"));
 	EXPECT_THAT(result.err, Not(HasSubstr("exception")));
-	EXPECT_EQ(summary()["frames"], 0);
+	// What an earlier run has left stays.
+	EXPECT_FALSE(std::filesystem::exists(folder_.file("result/summary.json")));
+	EXPECT_THAT(result.err, Not(HasSubstr("results")));
 }
 
 TEST_F(SemloopSlamLive, WrongUseIsToldWithTheRemedy)
@@ -184,6 +189,12 @@ TEST_F(SemloopSlamLive, WrongUseIsToldWithTheRemedy)
 	EXPECT_THAT(messageOf("--live odd"), HasSubstr("CNoSuchSensor: no such sensor class"));
 	EXPECT_THAT(messageOf("--live -i room.rawlog"), HasSubstr("exclude each other"));
 	EXPECT_THAT(messageOf("-i room.rawlog --record x.rawlog"), HasSubstr("--record needs --live"));
+	EXPECT_THAT(
+		messageOf("--live --record room.rawlog"), HasSubstr("room.rawlog is there already"));
+	EXPECT_THAT(messageOf("--live --record result"), HasSubstr("ends in .rawlog"));
+	EXPECT_THAT(messageOf("--live camera --record new.rawlog"), HasSubstr("no such section"));
+	EXPECT_FALSE(std::filesystem::exists(folder_.file("new.rawlog")));
+	EXPECT_FALSE(std::filesystem::exists(folder_.file("new.rawlog.partial")));
 	EXPECT_THAT(
 		messageOf("--live --set modules.plugins=/nowhere/libsensor.so"),
 		HasSubstr("/nowhere/libsensor.so"));

@@ -23,11 +23,14 @@ class FakeSensor : public mrpt::hwdrivers::CGenericSensor, public RecordedSensor
 public:
 	enum class Turn
 	{
-		Frame,     //!< gives a scan
+		Frame,       //!< gives a scan
+		EarlyFrame,  //!< of an hour before
+		TimelessFrame,
 		Odometry,  //!< gives something else
 		Nothing,
 		Silence,  //!< takes 0.5 s
 		Throw,
+		ThrowNumber,
 		Error,  //!< state ssError
 		Hang    //!< until released
 	};
@@ -49,6 +52,13 @@ public:
 			throw std::runtime_error("mode = bad: there is no such mode");
 	}
 
+	void initialize() override { std::this_thread::sleep_for(startup()); }
+	static std::chrono::milliseconds& startup()
+	{
+		static std::chrono::milliseconds time{0};
+		return time;
+	}
+
 	void doProcess() override
 	{
 		using namespace std::chrono_literals;
@@ -56,6 +66,12 @@ public:
 		{
 			case Turn::Frame:
 				give<mrpt::obs::CObservation3DRangeScan>();
+				break;
+			case Turn::EarlyFrame:
+				give<mrpt::obs::CObservation3DRangeScan>(time(next_ - 1) - 1h);
+				break;
+			case Turn::TimelessFrame:
+				give<mrpt::obs::CObservation3DRangeScan>(INVALID_TIMESTAMP);
 				break;
 			case Turn::Odometry:
 				give<mrpt::obs::CObservationOdometry>();
@@ -67,6 +83,8 @@ public:
 				break;
 			case Turn::Throw:
 				throw std::runtime_error("the cable is broken");
+			case Turn::ThrowNumber:
+				throw 42;
 			case Turn::Error:
 				m_state = ssError;
 				break;
@@ -87,8 +105,13 @@ private:
 	template <class Observation>
 	void give()
 	{
+		give<Observation>(time(next_ - 1));
+	}
+	template <class Observation>
+	void give(mrpt::Clock::time_point time)
+	{
 		const auto observation = Observation::Create();
-		observation->timestamp = time(next_ - 1);
+		observation->timestamp = time;
 		appendObservation(observation);
 	}
 

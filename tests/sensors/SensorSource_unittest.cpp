@@ -32,6 +32,7 @@ protected:
 	{
 		FakeSensor::doRegister();
 		FakeSensor::released() = false;
+		FakeSensor::startup() = 0ms;
 		config_.write("camera", "driver", std::string("FakeSensor"));
 	}
 
@@ -151,6 +152,61 @@ TEST_F(SensorSourceTest, StopGivesWhatWaitsAndEnds)
 	FakeSensor::released() = true;
 }
 
+TEST_F(SensorSourceTest, AClockThatIsSetBackChangesNoOrder)
+{
+	auto& source =
+		grab({Turn::Frame, Turn::Frame, Turn::EarlyFrame, Turn::EarlyFrame, Turn::EarlyFrame});
+	const auto times = readAll(source);
+	ASSERT_EQ(times.size(), 5u);
+	EXPECT_EQ(times[1], at(1));
+	// The first one behind comes as much later as it came, by any clock.
+	EXPECT_GT(times[2], at(1));
+	EXPECT_LT(times[2], at(1) + 10s);
+	EXPECT_EQ(times[3] - times[2], at(3) - at(2));
+	EXPECT_EQ(times[4] - times[3], at(4) - at(3));
+	EXPECT_EQ(tapped_[4], times[4]) << "the recording has the same times";
+	ASSERT_EQ(reports_.size(), 1u);
+	EXPECT_THAT(reports_[0], HasSubstr("the clock was set back"));
+}
+
+TEST_F(SensorSourceTest, AFrameWithoutTimeIsOfNow)
+{
+	const auto before = mrpt::Clock::now();
+	const auto times = readAll(grab({Turn::TimelessFrame}));
+	ASSERT_EQ(times.size(), 1u);
+	EXPECT_GE(times[0], before);
+	EXPECT_LE(times[0], mrpt::Clock::now());
+}
+
+TEST_F(SensorSourceTest, OtherObservationsAreNoFrames)
+{
+	options_.stallAfter = 0.1;
+	options_.lostAfter = 0.8;
+	auto& source = grab({Turn::Frame, Turn::Odometry, Turn::Silence, Turn::Odometry, Turn::Hang});
+	EXPECT_THAT(readAll(source), ElementsAre(at(0), at(1), at(3)));
+	EXPECT_THAT(error_, AllOf(HasSubstr("no frame for 0."), HasSubstr("CObservationOdometry")));
+	EXPECT_EQ(source.counts().stalls, 1u);
+	FakeSensor::released() = true;
+}
+
+TEST_F(SensorSourceTest, MayTakeItsTimeToStart)
+{
+	FakeSensor::startup() = 700ms;
+	options_.stallAfter = 0.1;
+	options_.lostAfter = 0.3;
+	auto& source = grab({Turn::Frame});
+	EXPECT_THAT(readAll(source), ElementsAre(at(0)));
+	EXPECT_EQ(error_, "");
+	EXPECT_THAT(reports_, ElementsAre("[camera] FakeSensor: still starting; Ctrl-C ends it"));
+	EXPECT_EQ(source.counts().stalls, 0u);
+}
+
+TEST_F(SensorSourceTest, AnythingThatADriverThrowsIsAnError)
+{
+	EXPECT_THAT(readAll(grab({Turn::Frame, Turn::ThrowNumber})), ElementsAre(at(0)));
+	EXPECT_THAT(error_, HasSubstr("[camera] FakeSensor: its driver failed"));
+}
+
 TEST_F(SensorSourceTest, MovesTheTimesToTheStartTime)
 {
 	options_.startTime = 7000;
@@ -172,7 +228,9 @@ TEST_F(SensorSourceTest, WrongSectionsAreToldWithTheRemedy)
 	config_.write("camera", "mode", std::string("bad"));
 	EXPECT_THAT(refusal("camera"), HasSubstr("[camera]: FakeSensor: mode = bad: there is no such"));
 	config_.write("camera_LEFT", "fx", 525.0);
-	EXPECT_THAT(sensorSections(config_), UnorderedElementsAre("camera", "camera_LEFT"));
+	config_.write("global", "rawlog_prefix", std::string("x"));
+	EXPECT_THAT(sensorSections(config_), UnorderedElementsAre("camera", "camera_LEFT", "global"));
+	EXPECT_THAT(sensorSections(mrpt::config::CConfigFileMemory("[global]\nx=1\n")), IsEmpty());
 }
 
 TEST(SensorSourceOptions, LostComesAfterStalled)

@@ -264,11 +264,12 @@ TEST_F(LiveFramesTest, CanBeLeftAtAnyTime)
 	EXPECT_LT(slam_->frameCount(), 1u);
 }
 
-TEST_F(LiveFramesTest, SkippedFramesBehindTheLastGoodOneAreToldAtTheEnd)
+TEST_F(LiveFramesTest, FramesThatCannotBeUsedAreSkippedAndTold)
 {
 	const std::string path = folder_.file("dark.rawlog");
 	RawlogWriter writer(path);
 	View view = renderView(roomScene(8), smallCamera(), cameraOnCircle(0));
+	writer.write(scanOf(view, 0));
 	writer.write(scanOf(view, 0));
 	view.frame.depth.setTo(0);
 	writer.write(scanOf(view, 1));
@@ -276,6 +277,10 @@ TEST_F(LiveFramesTest, SkippedFramesBehindTheLastGoodOneAreToldAtTheEnd)
 	sensor_ = std::make_unique<ScriptedSensor>(path);
 	LiveFrames& live = start();
 	EXPECT_EQ(readAll(live).size(), 1u);
-	ASSERT_EQ(live.skippedAtEnd().size(), 1u);
-	EXPECT_THAT(live.skippedAtEnd()[0], HasSubstr("no pixel has a valid depth"));
+	EXPECT_EQ(error_, "");
+	const auto skipped = live.takeSkipped();
+	ASSERT_EQ(skipped.size(), 2u);
+	EXPECT_THAT(skipped[0], HasSubstr("skipped: the frame before is of 1000.000000"));
+	EXPECT_THAT(skipped[1], HasSubstr("no pixel has a valid depth"));
+	EXPECT_EQ(live.takeSkipped().size(), 0u);
 }

@@ -73,6 +73,13 @@ GzOutput::~GzOutput()
 	if (file_) gzclose(file_);
 }
 
+void GzOutput::setLevel(int level)
+{
+	if (level == level_) return;
+	if (gzsetparams(file_, level, Z_DEFAULT_STRATEGY) != Z_OK) fail();
+	level_ = level;
+}
+
 void GzOutput::write(const void* data, std::size_t count)
 {
 	if (count > 0 && gzfwrite(data, 1, count, file_) != count) fail();

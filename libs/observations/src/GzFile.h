@@ -42,12 +42,17 @@ private:
 	State state_ = State::Good;
 };
 
-/** Writes a gz-compressed file (level 1). Throws InputError naming the file when that fails. */
+/** Writes a gz-compressed file (kFast unless told otherwise). Throws InputError naming the file when that fails. */
 class GzOutput
 {
 public:
+	static constexpr int kStored = 0, kFast = 1;
+
 	explicit GzOutput(const std::string& path);
 	~GzOutput();
+
+	/** zlib's level of compression for what follows. */
+	void setLevel(int level);
 
 	void write(const void* data, std::size_t count);
 	void close();
@@ -57,6 +62,7 @@ private:
 
 	std::string path_;
 	gzFile_s* file_ = nullptr;
+	int level_ = kFast;
 	std::size_t sinceFlush_ = 0;
 };
 

@@ -49,6 +49,11 @@ void RawlogWriter::writeBytes(const std::string& bytes)
 	stream_->file.write(bytes.data(), bytes.size());
 }
 
+void RawlogWriter::setCompression(bool on)
+{
+	if (stream_) stream_->file.setLevel(on ? GzOutput::kFast : GzOutput::kStored);
+}
+
 void RawlogWriter::close()
 {
 	if (!stream_) return;

@@ -3,6 +3,7 @@
 #include <charconv>
 #include <cmath>
 #include <cstdio>
+#include <cstdlib>
 
 namespace semloop
 {
@@ -68,10 +69,12 @@ std::optional<mrpt::Clock::time_point> parseUnixTime(std::string_view text)
 
 std::string formatUnixTime(mrpt::Clock::time_point time)
 {
-	const Ticks microseconds = (unixTicks(time) + kTicksPerMicrosecond / 2) / kTicksPerMicrosecond;
+	Ticks microseconds = (unixTicks(time) + kTicksPerMicrosecond / 2) / kTicksPerMicrosecond;
+	const char* const sign = microseconds < 0 ? "-" : "";  // before 1970: a missing time is
+	microseconds = std::abs(microseconds);
 	char text[32];
 	std::snprintf(
-		text, sizeof(text), "%lld.%06lld", static_cast<long long>(microseconds / 1'000'000),
+		text, sizeof(text), "%s%lld.%06lld", sign, static_cast<long long>(microseconds / 1'000'000),
 		static_cast<long long>(microseconds % 1'000'000));
 	return text;
 }

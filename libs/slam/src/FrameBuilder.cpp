@@ -9,8 +9,8 @@ using mrpt::obs::CObservation3DRangeScan;
 
 namespace semloop
 {
-FrameBuilder::FrameBuilder(std::string source, StageTimings& timings)
-	: source_(std::move(source)), timings_(timings)
+FrameBuilder::FrameBuilder(std::string source, Disorder disorder, StageTimings& timings)
+	: source_(std::move(source)), disorder_(disorder), timings_(timings)
 {
 }
 
@@ -22,7 +22,7 @@ std::optional<SlamFrame> FrameBuilder::take(const mrpt::obs::CObservation::Ptr& 
 		others_.push_back(observation);
 		return std::nullopt;
 	}
-	checkTime(*scan);
+	if (!isInOrder(*scan)) return std::nullopt;
 	auto images = imagesOf(*scan);
 	if (!images) return std::nullopt;
 	SlamFrame frame;
@@ -33,14 +33,25 @@ std::optional<SlamFrame> FrameBuilder::take(const mrpt::obs::CObservation::Ptr& 
 	return frame;
 }
 
-void FrameBuilder::checkTime(const CObservation3DRangeScan& scan)
+std::vector<std::string> FrameBuilder::takeSkipped()
 {
-	if (lastTime_ && scan.timestamp <= *lastTime_)
+	return std::exchange(skipped_, {});
+}
+
+bool FrameBuilder::isInOrder(const CObservation3DRangeScan& scan)
+{
+	if (!lastTime_ || scan.timestamp > *lastTime_)
+	{
+		lastTime_ = scan.timestamp;
+		return true;
+	}
+	const std::string frame = source_ + ": frame at " + formatUnixTime(scan.timestamp),
+					  before = "the frame before is of " + formatUnixTime(*lastTime_);
+	if (disorder_ == Disorder::Throws)
 		throw InputError(
-			source_ + ": frame at " + formatUnixTime(scan.timestamp) +
-			": time goes backwards (the frame before is of " + formatUnixTime(*lastTime_) +
-			"); sort the rawlog by time first");
-	lastTime_ = scan.timestamp;
+			frame + ": time goes backwards (" + before + "); sort the rawlog by time first");
+	skipped_.push_back(frame + " skipped: " + before);
+	return false;
 }
 
 std::optional<RgbdFrame> FrameBuilder::imagesOf(const CObservation3DRangeScan& scan)

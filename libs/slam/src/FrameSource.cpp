@@ -77,7 +77,7 @@ FrameSource::FrameSource(
 	: recording_(std::move(recording)),
 	  frontEnd_(std::move(frontEnd)),
 	  timings_(timings),
-	  builder_(recording_->name(), timings)
+	  builder_(recording_->name(), FrameBuilder::Disorder::Throws, timings)
 {
 	if (framesAhead == 0) return;
 	queue_ = std::make_unique<Queue>(std::size_t(framesAhead));

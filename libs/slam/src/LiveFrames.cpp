@@ -14,7 +14,7 @@ LiveFrames::LiveFrames(
 	  slam_(slam),
 	  options_(options),
 	  timings_(timings),
-	  builder_(sensor.name(), timings)
+	  builder_(sensor.name(), FrameBuilder::Disorder::Skips, timings)
 {
 	segmentation_ = std::thread([this] { runThread(&LiveFrames::segmentAll, segmentationEnded_); });
 	tracking_ = std::thread([this] { runThread(&LiveFrames::trackAll, trackingEnded_); });
@@ -60,7 +60,9 @@ void LiveFrames::trackAll()
 	while (const auto observation = sensor_.next())
 	{
 		if (!isWanted()) return;
-		if (auto frame = builder_.take(observation)) trackFrame(std::move(*frame));
+		auto frame = builder_.take(observation);
+		keepSkipped(frame ? std::exchange(frame->skipped, {}) : builder_.takeSkipped());
+		if (frame) trackFrame(std::move(*frame));
 	}
 }
 
@@ -153,10 +155,16 @@ bool LiveFrames::hasEnded() const
 	return trackingEnded_ && segmentationEnded_ && waiting_.empty() && !error_;
 }
 
-std::vector<std::string> LiveFrames::skippedAtEnd() const
+void LiveFrames::keepSkipped(std::vector<std::string> warnings)
 {
 	const std::lock_guard lock(mutex_);
-	return trackingEnded_ ? builder_.skippedSince() : std::vector<std::string>();
+	skipped_.insert(skipped_.end(), warnings.begin(), warnings.end());
+}
+
+std::vector<std::string> LiveFrames::takeSkipped()
+{
+	const std::lock_guard lock(mutex_);
+	return std::exchange(skipped_, {});
 }
 
 std::size_t LiveFrames::unsegmented() const

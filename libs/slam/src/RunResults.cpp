@@ -11,8 +11,10 @@
 #include <sys/resource.h>
 
 #include <algorithm>
+#include <exception>
 #include <filesystem>
 #include <fstream>
+#include <functional>
 #include <nlohmann/json.hpp>
 
 #include "KeyFrameObservations.h"
@@ -138,14 +140,16 @@ std::string summary(const SemanticSlam& slam, const RunInfo& info, const StageTi
 	json["ended_by"] = info.endedBy;
 	json["frames"] = slam.frameCount();
 	json["frames_segmented"] = slam.segmentedFrameCount();
-	json["frames_skipped"] = info.skippedFrames.size();
+	json["frames_skipped"] = info.skippedFrames;
 	json["frames_lost"] = slam.lostFrameCount();
-	json["skipped"] = info.skippedFrames;
+	json["skipped"] = info.warnings;
 	if (info.live)
 		json["live"] = {
 			{"observations_grabbed", info.live->sensor.grabbed},
 			{"observations_dropped", info.live->sensor.dropped},
 			{"frames_unsegmented", info.live->unsegmented},
+			{"observations_recorded", info.live->recorder.recorded},
+			{"observations_not_recorded", info.live->recorder.omitted},
 			{"stalls", info.live->sensor.stalls},
 			{"longest_stall_s", info.live->sensor.longestStall}};
 	json["path_length_m"] = pathLength(slam.trajectory());
@@ -166,6 +170,21 @@ std::string summary(const SemanticSlam& slam, const RunInfo& info, const StageTi
 	json["peak_memory_mb"] = peakMemoryMegabytes();
 	return json.dump(2) + "\n";
 }
+
+/** All of them, also behind one that fails; throws the first failure at the end. */
+void writeEach(const std::vector<std::function<void()>>& files)
+{
+	std::exception_ptr failure;
+	for (const auto& write : files) try
+		{
+			write();
+		}
+		catch (...)
+		{
+			if (!failure) failure = std::current_exception();
+		}
+	if (failure) std::rethrow_exception(failure);
+}
 }  // namespace
 
 void writeRunResults(
@@ -173,19 +192,26 @@ void writeRunResults(
 	const StageTimings& timings)
 {
 	const fs::path out(folder);
-	writeTumTrajectory((out / "trajectory.tum").string(), slam.trajectory());
-	writeTumTrajectory((out / "trajectory_odometry.tum").string(), slam.odometryTrajectory());
-	SemanticGraph::fromMap(slam.map(), slam.options().minObservations)
-		.save((out / "objects.json").string());
-	saveObjectMap((out / "map.objmap").string(), slam.map());
-	writeMeshes(out / "objects", slam);
-	writeSimpleMap(out / "map.simplemap", slam);
-	writeScene(out / "scene.3Dscene", slam);
-	writeG2o((out / "pose_graph.g2o").string(), slam.poseGraph());
-	writeText(out / "loops.jsonl", loopsAsJsonLines(slam.loops()));
-	writeText(out / "associations.csv", associationsAsCsv(slam.associations()));
-	timings.writeCsv((out / "timings.csv").string());
-	writeText(out / "summary.json", summary(slam, info, timings));
+	const auto graph = [&]
+	{
+		SemanticGraph::fromMap(slam.map(), slam.options().minObservations)
+			.save((out / "objects.json").string());
+	};
+	writeEach(
+		{[&] { writeTumTrajectory((out / "trajectory.tum").string(), slam.trajectory()); },
+		 [&] {
+			 writeTumTrajectory(
+				 (out / "trajectory_odometry.tum").string(), slam.odometryTrajectory());
+		 },
+		 graph, [&] { saveObjectMap((out / "map.objmap").string(), slam.map()); },
+		 [&] { writeMeshes(out / "objects", slam); },
+		 [&] { writeSimpleMap(out / "map.simplemap", slam); },
+		 [&] { writeScene(out / "scene.3Dscene", slam); },
+		 [&] { writeG2o((out / "pose_graph.g2o").string(), slam.poseGraph()); },
+		 [&] { writeText(out / "loops.jsonl", loopsAsJsonLines(slam.loops())); },
+		 [&] { writeText(out / "associations.csv", associationsAsCsv(slam.associations())); },
+		 [&] { timings.writeCsv((out / "timings.csv").string()); },
+		 [&] { writeText(out / "summary.json", summary(slam, info, timings)); }});
 }
 
 }  // namespace semloop

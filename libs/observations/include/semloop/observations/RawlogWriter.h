@@ -22,6 +22,8 @@ public:
 	void write(const mrpt::serialization::CSerializable& object);
 	/** Same, for the bytes of an object from RawlogReader::nextObject(). */
 	void writeBytes(const std::string& bytes);
+	/** Whether what is written from now on is compressed; it is unless told otherwise. */
+	void setCompression(bool on);
 	/** Flushes and gives the file its final name. */
 	void close();
 

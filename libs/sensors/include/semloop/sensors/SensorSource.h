@@ -26,12 +26,12 @@ protected:
 	void describe(OptionFields& fields) override;
 };
 
-/** What became of a sensor's observations so far. */
+/** What became of a sensor's observations so far. Frames are RGB-D scans. */
 struct SensorCounts
 {
 	std::size_t grabbed = 0;
 	std::size_t dropped = 0;    //!< the queue was full
-	std::size_t stalls = 0;     //!< pauses of more than stall_after
+	std::size_t stalls = 0;     //!< more than stall_after without a frame
 	double longestStall = 0.0;  //!< [s]
 };
 
@@ -72,17 +72,19 @@ public:
 private:
 	struct Channel;
 
-	void noteSilence(std::chrono::duration<double> silence);
+	/** Reports a stall and its end; throws when the sensor is lost. */
+	void watch();
+	std::string whyLost() const;
 
 	std::string name_;
 	SensorSourceOptions options_;
 	Report report_;
 	std::shared_ptr<Channel> channel_;  //!< shared with the thread, which may outlive us
-	bool silent_ = false;
+	bool silent_ = false, toldOfStart_ = false;
 };
 
-/** Sections of a configuration that describe a sensor: those with the key `driver`, and those named after
- *  them, as X_LEFT and X_RIGHT with the calibration of X. */
+/** Sections of a configuration that describe a sensor: those with the key `driver`, those named after
+ *  them, as X_LEFT and X_RIGHT with the calibration of X, and rawlog-grabber's [global]. */
 std::vector<std::string> sensorSections(const mrpt::config::CConfigFileBase& config);
 
 }  // namespace semloop

@@ -16,21 +16,32 @@ namespace semloop
 class FrameBuilder
 {
 public:
+	/** What to do with a frame that is not later than the one before. */
+	enum class Disorder
+	{
+		Throws,  //!< a rawlog is to be sorted
+		Skips    //!< as one that cannot be used; a sensor goes on
+	};
+
 	/** The source's name is for messages. */
-	FrameBuilder(std::string source, StageTimings& timings);
+	FrameBuilder(std::string source, Disorder disorder, StageTimings& timings);
 
 	/** A frame, neither segmented nor rectified, when the observation is an RGB-D scan that can be
-	 *  used. Throws InputError when time goes backwards. */
+	 *  used. Throws InputError when time goes backwards and Disorder says so. */
 	std::optional<SlamFrame> take(const mrpt::obs::CObservation::Ptr& observation);
 	/** Warnings about frames behind the last good one. */
 	const std::vector<std::string>& skippedSince() const { return skipped_; }
+	/** Same, and forgets them. */
+	std::vector<std::string> takeSkipped();
 
 private:
-	void checkTime(const mrpt::obs::CObservation3DRangeScan& scan);
+	/** False: to be skipped. */
+	bool isInOrder(const mrpt::obs::CObservation3DRangeScan& scan);
 	/** Empty: the frame is to be skipped; why is in skipped_. */
 	std::optional<RgbdFrame> imagesOf(const mrpt::obs::CObservation3DRangeScan& scan);
 
 	std::string source_;
+	Disorder disorder_;
 	StageTimings& timings_;
 	std::vector<mrpt::obs::CObservation::Ptr> others_;
 	std::vector<std::string> skipped_;

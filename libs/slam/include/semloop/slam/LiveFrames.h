@@ -55,8 +55,8 @@ public:
 
 	/** Frames that were tracked, but not segmented, for lack of time. */
 	std::size_t unsegmented() const;
-	/** Warnings about frames behind the last good one; none before the sensor has ended. */
-	std::vector<std::string> skippedAtEnd() const;
+	/** Warnings about frames that could not be used, since the last call. */
+	std::vector<std::string> takeSkipped();
 
 private:
 	struct Waiting
@@ -69,6 +69,7 @@ private:
 
 	void trackAll();
 	void trackFrame(SlamFrame frame);
+	void keepSkipped(std::vector<std::string> warnings);
 	void segmentAll();
 	void segmentNext(Waiting& frame);
 	/** A thread's body; what it throws goes to next(). */
@@ -89,6 +90,7 @@ private:
 	std::list<Waiting> waiting_;  //!< in order of time; a list: its elements stay put
 	std::deque<Waiting*> toSegment_;
 	std::size_t unsegmented_ = 0;
+	std::vector<std::string> skipped_;
 	bool trackingEnded_ = false, segmentationEnded_ = false;
 	bool stopped_ = false;
 	std::exception_ptr error_;

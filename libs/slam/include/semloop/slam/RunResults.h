@@ -1,5 +1,6 @@
 #pragma once
 
+#include <semloop/sensors/SensorRecorder.h>
 #include <semloop/sensors/SensorSource.h>
 #include <semloop/slam/SemanticSlam.h>
 #include <semloop/slam/StageTimings.h>
@@ -15,6 +16,7 @@ struct LiveCounts
 {
 	SensorCounts sensor;
 	std::size_t unsegmented = 0;  //!< tracked, but without instances for lack of time
+	SensorRecorder::Counts recorder;
 };
 
 /** What only the caller of SemanticSlam knows about a run. */
@@ -22,14 +24,16 @@ struct RunInfo
 {
 	std::string rawlog;  //!< or the sensor
 	std::string config;
-	std::vector<std::string> skippedFrames;     //!< one warning each
+	std::size_t skippedFrames = 0;
+	std::vector<std::string> warnings;          //!< about them, not about all when they are many
 	std::string endedBy = "end of the rawlog";  //!< or what stopped the run
 	double wallSeconds = 0.0;
 	std::optional<LiveCounts> live;
 };
 
 /** Writes every file of a run (doc/file-formats.md) into an existing folder; stale object meshes of
- *  an earlier run are removed. Throws InputError naming the file that cannot be written. */
+ *  an earlier run are removed. Throws InputError naming the first file that
+ *  cannot be written, after all others. */
 void writeRunResults(
 	const std::string& folder, const SemanticSlam& slam, const RunInfo& info,
 	const StageTimings& timings);
