@@ -62,7 +62,7 @@ public:
 	void doProcess() override
 	{
 		using namespace std::chrono_literals;
-		switch (script().at(next_++))
+		switch (turns_.at(next_++))
 		{
 			case Turn::Frame:
 				give<mrpt::obs::CObservation3DRangeScan>();
@@ -93,7 +93,7 @@ public:
 		}
 	}
 
-	bool isAtEnd() const override { return next_ == script().size(); }
+	bool isAtEnd() const override { return next_ == turns_.size(); }
 
 	/** Of what the i-th turn gives. */
 	static mrpt::Clock::time_point time(std::size_t i)
@@ -115,6 +115,7 @@ private:
 		appendObservation(observation);
 	}
 
+	const std::vector<Turn> turns_ = script();
 	std::size_t next_ = 0;
 };
 

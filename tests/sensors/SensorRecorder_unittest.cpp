@@ -33,6 +33,12 @@ struct News
 			lines.push_back(line);
 		};
 	}
+	std::vector<std::string> all()
+	{
+		const std::lock_guard lock(mutex);
+		return lines;
+	}
+
 	std::mutex mutex;
 	std::vector<std::string> lines;
 };
@@ -59,7 +65,7 @@ TEST(SensorRecorder, KeepsEverythingInOrder)
 	EXPECT_EQ(recorder.counts().omitted, 0u);
 	recorder.write(reading(500));  // too late, and no harm
 	recorder.close();
-	EXPECT_TRUE(news.lines.empty());
+	EXPECT_TRUE(news.all().empty());
 
 	RawlogReader reader(path);
 	for (int i = 0; i < 500; ++i)
@@ -85,7 +91,7 @@ TEST(SensorRecorder, WhatCannotBeWrittenIsTold)
 	for (int i = 0; i < 20000; ++i) recorder.write(reading(i * 7919));
 	EXPECT_THROW(recorder.close(), InputError);
 	EXPECT_THAT(
-		news.lines, testing::Contains(testing::HasSubstr("the recording ends here: " + path)));
+		news.all(), testing::Contains(testing::HasSubstr("the recording ends here: " + path)));
 	EXPECT_GT(recorder.counts().omitted, 0u);
 	EXPECT_FALSE(std::filesystem::exists(path));
 }
@@ -133,7 +139,7 @@ TEST(SensorRecorder, ADiskThatHangsIsNotWaitedFor)
 		image->rangeImage.data()[i] = uint16_t(i * 7919);  // does not compress
 	for (int i = 0; i < 200; ++i) recorder.write(image);
 	EXPECT_GE(recorder.counts().omitted, 90u);
-	EXPECT_THAT(news.lines.at(0), testing::HasSubstr("does not keep up"));
+	EXPECT_THAT(news.all().at(0), testing::HasSubstr("does not keep up"));
 	std::signal(SIGPIPE, SIG_IGN);
 	close(reader);  // a broken pipe
 	EXPECT_THROW(recorder.close(), InputError);
