@@ -311,3 +311,27 @@ TEST(SemanticSlam, AnUnregisteredModuleAndAnUnknownSectionStopWithTheChoices)
 	const auto section = messageOf<UsageError>([&] { SemanticSlam slam(typo, logger, timings); });
 	EXPECT_NE(section.find("[tracing]"), std::string::npos) << section;
 }
+
+TEST(SemanticSlam, KeyPosesAreFewHoweverLongTheWay)
+{
+	const TemporaryFolder folder;
+	RunOptions options;
+	options.degrees = 300;
+	const RecordedRun recorded = recordRun(folder, options);
+	auto config = runConfiguration(recorded, 0);
+	const auto all = mapRawlog(recorded.rawlog, config, 0);
+	config.write("slam", "max_key_poses", 8);
+	const auto few = mapRawlog(recorded.rawlog, config, 0);
+	const auto &every = all->slam->keyFrames(), &some = few->slam->keyFrames();
+	ASSERT_GT(every.size(), 16u);
+	EXPECT_GE(some.size(), 4u);
+	EXPECT_LE(some.size(), 8u);
+	// From the beginning to near the end, in steps that are even but for whole frames.
+	EXPECT_EQ(some.front().frame, every.front().frame);
+	const std::size_t step = some[1].frame - some[0].frame;
+	EXPECT_GE(step, 4 * (every[1].frame - every[0].frame) / 2);
+	for (std::size_t i = 1; i < some.size(); ++i)
+		EXPECT_NEAR(double(some[i].frame - some[i - 1].frame), double(step), 0.4 * double(step));
+	EXPECT_GT(some.back().frame + 2 * step, every.back().frame);
+	EXPECT_TRUE(some.back().scan && some.back().instances);
+}

@@ -98,6 +98,7 @@ void SemanticSlam::makeModules(const mrpt::config::CConfigFileBase& config)
 	requireSlamSections(config);
 	modules_.loadFromConfigFile(config, "modules");
 	options_.loadFromConfigFile(config, "slam");
+	keyPoseDistance_ = options_.keyPoseDistance;
 	loadPlugins(modules_.plugins, modulePlace(config, "plugins"));
 
 	odometry_ = makeConfigured<Odometry>(config, modules_.odometry, "odometry", "odometry");

@@ -208,10 +208,15 @@ std::vector<AssociationRecord> SemanticSlam::associations() const
 
 void SemanticSlam::keepKeyFrame(const SlamFrame& input)
 {
-	if (!keyFrames_.empty() && localMap_.path() - pathAtKeyFrame_ < options_.keyPoseDistance)
-		return;
+	if (!keyFrames_.empty() && localMap_.path() - pathAtKeyFrame_ < keyPoseDistance_) return;
 	pathAtKeyFrame_ = localMap_.path();
 	keyFrames_.push_back({frameCount() - 1, input.scan, input.instances});
+	if (keyFrames_.size() <= std::size_t(options_.maxKeyPoses)) return;
+	// However long the way, their images need no more memory than that.
+	std::vector<KeyFrame> everyOther;
+	for (std::size_t i = 0; i < keyFrames_.size(); i += 2) everyOther.push_back(keyFrames_[i]);
+	keyFrames_ = std::move(everyOther);
+	keyPoseDistance_ *= 2;
 }
 
 void SemanticSlam::maintainMap()

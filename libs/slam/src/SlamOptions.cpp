@@ -46,6 +46,9 @@ void SlamOptions::describe(OptionFields& f)
 	f.number(
 		"key_pose_distance", keyPoseDistance, 0.01, 100,
 		"path between key poses of map.simplemap [m]");
+	f.integer(
+		"max_key_poses", maxKeyPoses, 2, 100000,
+		"when there are more, every other one is dropped and the distance between them doubled");
 	f.number(
 		"scan_below", scanBelow, 0, 10,
 		"the horizontal scan of a key pose, for maps that take no points, is of what is so far "

@@ -125,6 +125,7 @@ private:
 	/** Detections that had no object yet, by their track. */
 	std::map<uint64_t, std::vector<AssociationRecord>> unassociated_;
 	std::vector<KeyFrame> keyFrames_;
+	double keyPoseDistance_ = 0.0;  //!< grows when there are many
 	double pathAtKeyFrame_ = 0.0;
 	std::size_t segmentedFrames_ = 0;
 	std::size_t lostFrames_ = 0;

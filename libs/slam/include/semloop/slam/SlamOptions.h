@@ -38,6 +38,7 @@ struct SlamOptions : Options
 	double observationSigmaAngle = 0.2;  //!< of e_oc [rad]
 	double maxDriftSigmas = 4.0;         //!< of a loop closure's correction; 0: no limit
 	double keyPoseDistance = 0.3;        //!< path between two key poses of map.simplemap [m]
+	int maxKeyPoses = 300;               //!< of them; their images stay in memory
 	double scanBelow = 0.1;              //!< of their horizontal scan: so far below the camera [m]
 	double scanAbove = 0.1;              //!< and so far above it [m]
 
