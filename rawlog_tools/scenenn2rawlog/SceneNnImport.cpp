@@ -24,6 +24,8 @@ namespace
 namespace fs = std::filesystem;
 
 constexpr std::size_t kPosesBeyondTheEnd = 5;  // players differ in what they pair at the end
+// PlaybackSync.cpp of hkust-vgd/scenenn: poses and mesh are of its frames, pixels as stored.
+const OniReading kAsSceneNnsPlayer{true, std::chrono::microseconds(33000)};
 constexpr double kLeastShareWithPose = 0.5;
 constexpr double kLeastShareOnMesh =
 	0.5;  // a wrong mesh: its floor, and a tenth of the rest by chance
@@ -65,7 +67,7 @@ public:
 			  import.trajectory.empty() ? SceneNnTrajectory{}
 										: readSceneNnTrajectory(import.trajectory)),
 		  truth_(readTruth(import)),
-		  recording_(import.oni),
+		  recording_(import.oni, kAsSceneNnsPlayer),
 		  rawlog_(import.rawlog),
 		  imagesFolder_(import.embed ? "" : makeExternalImagesFolder(import.rawlog))
 	{

@@ -16,7 +16,7 @@ namespace semloop
 namespace
 {
 constexpr double kRotationTolerance = 0.01;  // files have six digits
-constexpr int64_t kMostFrames = 10000000;    // days of recording: beyond is a broken number
+constexpr int64_t kMostFrames = 1000000;     // nine hours at 30 Hz: beyond is a broken number
 
 /** Lines with something in them, cut into words. */
 class Lines

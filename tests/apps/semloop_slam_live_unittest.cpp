@@ -35,7 +35,7 @@ segmentation_queue = 100
 mapping_queue = 100
 lost_after = 6
 [sensor]
-driver = COpenNI2Sensor
+driver = COpenNI2Sensor    ; any of MRPT's
 width = 160
 height = 120
 fps = 30
@@ -44,6 +44,7 @@ grab_3D_points = false
 driver = COniFileSensor
 file = recorded.oni
 process_rate = 100
+speed = 1       ; as recorded
 [odd]
 driver = CNoSuchSensor
 )";
@@ -99,15 +100,22 @@ TEST_F(SemloopSlamLive, MapsWhatTheCameraSeesAndRecordsIt)
 	const auto kept = scansOf(folder_.file("kept.rawlog")), given = scansOf(recorded_.rawlog);
 	ASSERT_GE(kept.size(), 25u);
 	EXPECT_EQ(json["live"]["observations_recorded"], kept.size());
-	for (std::size_t i = 0; i < kept.size(); ++i)
+	// The camera sees as far as 10 m.
+	const auto isSame = [](const auto& seen, const auto& shown)
 	{
-		const auto seen = kept[i]->rangeImage.asEigen(), shown = given[i]->rangeImage.asEigen();
-		ASSERT_EQ(seen.size(), shown.size());
-		// The camera sees as far as 10 m.
-		EXPECT_TRUE((seen.array() == shown.array() || shown.array() > 10000).all()) << i;
+		const auto a = seen->rangeImage.asEigen(), b = shown->rangeImage.asEigen();
+		return a.size() == b.size() && (a.array() == b.array() || b.array() > 10000).all();
+	};
+	auto from = given.begin();
+	for (const auto& scan : kept)
+	{
+		from =
+			std::find_if(from, given.end(), [&](const auto& shown) { return isSame(scan, shown); });
+		ASSERT_NE(from, given.end()) << "not a frame of the camera's, or not in order";
 		EXPECT_NEAR(
-			mrpt::Clock::toDouble(kept[i]->timestamp), mrpt::Clock::toDouble(frameTime(int(i))),
-			0.5);
+			mrpt::Clock::toDouble(scan->timestamp),
+			mrpt::Clock::toDouble(frameTime(int(from - given.begin()))), 0.5);
+		++from;
 	}
 }
 
@@ -118,17 +126,21 @@ TEST_F(SemloopSlamLive, AnUnpluggedCameraEndsTheRunWithEverythingSoFar)
 	EXPECT_EQ(result.code, 1);
 	EXPECT_THAT(result.err, HasSubstr("[sensor] COpenNI2Sensor: the camera was unplugged"));
 	EXPECT_THAT(result.err, HasSubstr("results so far are in result"));
-	EXPECT_EQ(summary()["frames"], 12);
-	EXPECT_EQ(readTumTrajectory(folder_.file("result/trajectory.tum")).size(), 12u);
-	EXPECT_EQ(scansOf(folder_.file("kept.rawlog")).size(), 12u);
+	// OpenNI2 keeps the newest image only: a busy computer may miss some.
+	const std::size_t frames = summary()["frames"];
+	EXPECT_GE(frames, 8u);
+	EXPECT_LE(frames, 12u);
+	EXPECT_EQ(summary()["live"]["observations_grabbed"], frames);
+	EXPECT_EQ(readTumTrajectory(folder_.file("result/trajectory.tum")).size(), frames);
+	EXPECT_EQ(scansOf(folder_.file("kept.rawlog")).size(), frames);
 }
 
 TEST_F(SemloopSlamLive, AStallIsReportedAndRecoveredFrom)
 {
 	const auto result = live(
-		recorded_.rawlog, {{"RATE", "10"}, {"STALL", "10:1.5"}}, "--live sensor --max-frames 16");
+		recorded_.rawlog, {{"RATE", "10"}, {"STALL", "15:4"}}, "--live sensor --max-frames 16");
 	EXPECT_EQ(result.code, 0) << result.err;
-	EXPECT_THAT(result.err, HasSubstr("no frame for 0.5 s, waiting"));
+	EXPECT_THAT(result.err, HasSubstr("no frame for 0."));
 	EXPECT_THAT(result.err, HasSubstr("frames again"));
 	EXPECT_EQ(summary()["frames"], 16);
 	EXPECT_GE(summary()["live"]["stalls"], 1);
@@ -167,12 +179,15 @@ TEST_F(SemloopSlamLive, CtrlCEndsItWithAllResults)
 
 TEST_F(SemloopSlamLive, WithoutACameraItSaysSo)
 {
+	folder_.write("summary.json", "of an earlier run");
+	std::filesystem::create_directory(folder_.file("result"));
+	std::filesystem::rename(folder_.file("summary.json"), folder_.file("result/summary.json"));
 	const auto result = live("", {}, "--live");
 	EXPECT_EQ(result.code, 1);
 	EXPECT_THAT(result.err, HasSubstr("[sensor] COpenNI2Sensor: no OpenNI2 device; plug one in"));
 	EXPECT_THAT(result.err, Not(HasSubstr("exception")));
 	// What an earlier run has left stays.
-	EXPECT_FALSE(std::filesystem::exists(folder_.file("result/summary.json")));
+	EXPECT_EQ(readBytes(folder_.file("result/summary.json")), "of an earlier run");
 	EXPECT_THAT(result.err, Not(HasSubstr("results")));
 }
 

@@ -49,6 +49,23 @@ TEST_F(OniFileSensor, GivesAFrameATimeAtFullSpeedAndTellsItsEnd)
 	EXPECT_TRUE(recorded.isAtEnd());
 }
 
+TEST_F(OniFileSensor, TakesItsTimeAsItWasRecordedOrAsToldTo)
+{
+	using Clock = std::chrono::steady_clock;
+	const std::string file = "\nfile = " + record();
+	// The last frame comes 290 ms behind the first.
+	for (const auto& [speed, least] : {std::pair("1", 290), std::pair("2", 145)})
+	{
+		const auto played = sensor("speed = " + std::string(speed) + "   ; a comment" + file);
+		const auto& recorded = dynamic_cast<const RecordedSensor&>(*played);
+		const auto start = Clock::now();
+		for (played->doProcess(); !recorded.isAtEnd(); played->doProcess())
+			std::this_thread::sleep_for(std::chrono::milliseconds(1));
+		EXPECT_GE(Clock::now() - start, std::chrono::milliseconds(least - 5)) << speed;
+		EXPECT_EQ(framesOf(take(*played)), framesFromTo(0, kFrames - 1));
+	}
+}
+
 TEST_F(OniFileSensor, KeepsEveryFrameForAGrabberThatComesLate)
 {
 	const auto played = sensor("speed = 0\nfile = " + record());

@@ -144,6 +144,49 @@ TEST_F(OniRecordings, AreTurnedBackWhenMirrored)
 	EXPECT_EQ(play(record("record-mirrored")).frames, framesFromTo(0, kFrames - 1));
 }
 
+TEST_F(OniRecordings, StayMirroredWhenAskedTo)
+{
+	OniRecording recording(record("record-mirrored"), {true, std::nullopt});
+	for (int i = 0; i < kFrames; i++)
+	{
+		const auto frame = recording.next();
+		ASSERT_TRUE(frame);
+		cv::Mat color, depth;
+		cv::flip(frame->color, color, 1);
+		cv::flip(frame->depth, depth, 1);
+		EXPECT_EQ(frameOf(color, depth), i);
+	}
+}
+
+TEST_F(OniRecordings, CanBePairedGreedily)
+{
+	// Colour images 4, 9, ... are lost; images come every 10 ms.
+	OniRecording recording(
+		record("record", {{"RATE", "100"}, {"DROP_COLOR", "5"}}), {false, microseconds(33000)});
+	std::vector<std::pair<int, int>> pairs;
+	while (const auto frame = recording.next())
+		pairs.emplace_back(frameOfDepth(frame->depth), frameOfColor(frame->color));
+	using Pairs = std::vector<std::pair<int, int>>;
+	ASSERT_GE(pairs.size(), 14u);
+	pairs.resize(14);
+	EXPECT_EQ(
+		pairs, (Pairs{
+				   {0, 0},
+				   {1, 1},
+				   {2, 2},
+				   {3, 3},
+				   {4, 5},
+				   {5, 6},
+				   {6, 7},
+				   {7, 8},
+				   {8, 10},
+				   {9, 11},
+				   {10, 12},
+				   {11, 13},
+				   {12, 15},
+				   {13, 16}}));
+}
+
 TEST_F(OniRecordings, WithoutDepthOrColourAreRefused)
 {
 	const std::string color = record("record-color");

@@ -2,6 +2,7 @@
 #include <mrpt/config/CConfigFileBase.h>
 #include <semloop/config/Error.h>
 #include <semloop/config/Options.h>
+#include <semloop/config/ReadText.h>
 
 #include <algorithm>
 #include <charconv>
@@ -186,7 +187,7 @@ void Options::loadFromConfigFile(
 				place + ": unknown key; this section has " +
 				(known.empty() ? std::string("no keys") : join(known, ", ")));
 		}
-		const std::string text = withoutComment(source.read_string(section, key, ""));
+		const std::string text = readText(source, section, key);
 		if (!assign(*field, text))
 			throw UsageError(place + " = " + text + ": not allowed; use " + allowed(*field));
 	}
@@ -222,6 +223,12 @@ std::string Options::markdownTable() const
 				 allowed(field) + " | " + field.help + " |\n";
 	}
 	return table;
+}
+
+std::string readText(
+	const mrpt::config::CConfigFileBase& source, const std::string& section, const std::string& key)
+{
+	return withoutComment(source.read_string(section, key, ""));
 }
 
 std::string configFileName(const mrpt::config::CConfigFileBase& source)

@@ -109,6 +109,7 @@ std::string makeExternalImagesFolder(const std::string& rawlogPath)
 {
 	const std::string folder = externalImagesFolder(rawlogPath);
 	std::error_code error;
+	fs::remove(rawlogPath, error);
 	fs::create_directories(folder, error);
 	if (error) throw InputError(folder + ": cannot be made (" + error.message() + ")");
 	return folder;

@@ -2,6 +2,7 @@
 #include <mrpt/core/initializer.h>
 #include <mrpt/obs/CObservationComment.h>
 #include <semloop/config/Error.h>
+#include <semloop/config/ReadText.h>
 #include <semloop/observations/CameraFile.h>
 #include <semloop/observations/UnixTime.h>
 #include <semloop/sensors/COniFileSensor.h>
@@ -39,7 +40,7 @@ double readNumber(
 	const CConfigFileBase& config, const std::string& section, const std::string& key,
 	double otherwise)
 {
-	const std::string text = config.read_string(section, key, "");
+	const std::string text = readText(config, section, key);
 	if (text.empty()) return otherwise;
 	double value = 0;
 	const char* const last = text.data() + text.size();
@@ -54,20 +55,20 @@ double readNumber(
 void COniFileSensor::loadConfig_sensorSpecific(
 	const CConfigFileBase& config, const std::string& section)
 {
-	file_ = config.read_string(section, "file", "");
+	file_ = readText(config, section, "file");
 	if (file_.empty()) fail(section, "file", file_, "a recording of OpenNI2, *.oni");
-	cameraFile_ = config.read_string(section, "camera_file", "");
+	cameraFile_ = readText(config, section, "camera_file");
 
 	const auto number = [&](const std::string& key, double otherwise)
 	{ return readNumber(config, section, key, otherwise); };
 	speed_ = number("speed", 1);
 	if (!(speed_ >= 0 && speed_ <= 1000))
 		fail(
-			section, "speed", config.read_string(section, "speed", ""),
+			section, "speed", readText(config, section, "speed"),
 			"between 0 (a frame each time it is asked) and 1000; 1 is as recorded");
 
 	startTime_.reset();
-	const std::string start = config.read_string(section, "start_time", "");
+	const std::string start = readText(config, section, "start_time");
 	if (!start.empty()) startTime_ = parseUnixTime(start);
 	if (!start.empty() && !startTime_) fail(section, "start_time", start, "a Unix time in seconds");
 

@@ -189,7 +189,8 @@ struct Queue
 
 struct OniRecording::Impl
 {
-	explicit Impl(const std::string& file) : path(file), name(requireOni(file)), end(name)
+	Impl(const std::string& file, const OniReading& itsReading)
+		: path(file), reading(itsReading), name(requireOni(file)), end(name)
 	{
 		player.opened = Clock::now();
 		if (player.device.open(name.c_str()) != openni::STATUS_OK)
@@ -275,7 +276,7 @@ struct OniRecording::Impl
 		const cv::Mat view(
 			size, type, const_cast<void*>(frame.getData()), std::size_t(stride));  // not written
 		cv::Mat image = isDepth ? view.clone() : bgrFrom(view, format);
-		if (stream.getMirroringEnabled()) cv::flip(image, image, 1);
+		if (stream.getMirroringEnabled() && !reading.keepMirrored) cv::flip(image, image, 1);
 		const microseconds time(int64_t(frame.getTimestamp()));
 		if (imagesRead++ == 0) origin = time;
 		(isDepth ? depths : colors).images.push_back({time - origin, image});
@@ -305,7 +306,8 @@ struct OniRecording::Impl
 			const auto later = std::max(d.time, c.time);
 			const bool successorIsNearer =
 				earlier.images.size() > 1 && std::chrono::abs(earlier.images[1].time - later) < gap;
-			if (gap <= halfPeriod && !successorIsNearer)
+			if (reading.greedyWithin ? gap <= *reading.greedyWithin
+									 : gap <= halfPeriod && !successorIsNearer)
 			{
 				OniFrame frame{d.time, c.image, d.image};
 				depths.images.pop_front();
@@ -320,6 +322,7 @@ struct OniRecording::Impl
 	}
 
 	const std::string path;
+	const OniReading reading;
 	const std::string name;
 	const EndListener end;
 	Player player;
@@ -334,7 +337,10 @@ struct OniRecording::Impl
 	bool atEnd = false;
 };
 
-OniRecording::OniRecording(const std::string& path) : impl_(std::make_unique<Impl>(path)) {}
+OniRecording::OniRecording(const std::string& path, const OniReading& reading)
+	: impl_(std::make_unique<Impl>(path, reading))
+{
+}
 OniRecording::~OniRecording() = default;
 OniRecording::OniRecording(OniRecording&&) noexcept = default;
 OniRecording& OniRecording::operator=(OniRecording&&) noexcept = default;

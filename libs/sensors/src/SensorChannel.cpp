@@ -146,11 +146,10 @@ void SensorSource::Channel::waitForNextTurn(Clock::time_point turn, bool idle) c
 void SensorSource::Channel::push(const CObservation::Ptr& observation)
 {
 	const bool wasSetBack = clock_.correct(*observation);
+	const std::lock_guard lock(mutex);
 	// Left behind by its owner, a thread that comes back keeps silent.
 	if (stopped) return;
 	if (tap_) tap_(observation);
-
-	const std::lock_guard lock(mutex);
 	if (wasSetBack) news.push_back(name + ": the clock was set back; times go on from the last");
 	++counts.grabbed;
 	queue_.push_back(observation);

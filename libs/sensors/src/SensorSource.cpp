@@ -2,6 +2,7 @@
 #include <mrpt/hwdrivers/CGenericSensor.h>
 #include <semloop/config/Error.h>
 #include <semloop/config/ExceptionMessage.h>
+#include <semloop/config/ReadText.h>
 #include <semloop/sensors/SensorSource.h>
 
 #include <algorithm>
@@ -31,7 +32,7 @@ CGenericSensor::Ptr makeSensor(
 	const std::string place = configFileName(config) + ": [" + section + "]";
 	if (!config.sectionExists(section))
 		throw UsageError(place + ": no such section; it describes the sensor, see config_ini/");
-	const std::string driver = config.read_string(section, "driver", "");
+	const std::string driver = readText(config, section, "driver");
 	if (driver.empty())
 		throw UsageError(place + " driver: missing; name a sensor's class, as COpenNI2Sensor");
 	const auto sensor = CGenericSensor::createSensorPtr(driver);

@@ -17,7 +17,8 @@ cv::Mat readImageFile(const std::string& path, int imreadFlags);
 /** The folder beside a rawlog where its external images live: path without extension + "_Images". */
 std::string externalImagesFolder(const std::string& rawlogPath);
 
-/** Makes that folder. Throws InputError when it cannot be made. */
+/** Makes that folder, for a rawlog that is to be written; one of this name is removed: its images are about
+ *  to be replaced. Throws InputError when it cannot be made. */
 std::string makeExternalImagesFolder(const std::string& rawlogPath);
 
 /** Name of the file of a frame's image: "color", 12, ".png" -> color_000012.png. */

@@ -20,6 +20,15 @@ struct OniFrame
 	cv::Mat depth;                      //!< CV_16UC1, in OniRecording::depthUnit(); 0 = invalid
 };
 
+/** How the images of a recording become frames. */
+struct OniReading
+{
+	bool keepMirrored = false;  //!< else mirrored images are turned back
+	/** Greedy pairs: the next image of one kind with the next of the other, when so close, else the
+	 *  earlier one is dropped. Without it each with the nearest within half a frame's period. */
+	std::optional<std::chrono::microseconds> greedyWithin;
+};
+
 /** Reads the frames of an .oni, a recording of OpenNI2's or OpenNI 1's, one by one and as fast as they
  *  can be decoded. Depth comes as it was stored, bit by bit.
  *
@@ -35,7 +44,7 @@ class OniRecording
 public:
 	/** Throws InputError when the file is missing, no .oni, cut so that OpenNI2 does not open it, without
 	 *  depth or colour, or when these differ in size or are in a format that is not known here. */
-	explicit OniRecording(const std::string& path);
+	explicit OniRecording(const std::string& path, const OniReading& reading = {});
 	~OniRecording();
 	OniRecording(OniRecording&&) noexcept;
 	OniRecording& operator=(OniRecording&&) noexcept;
