@@ -4,12 +4,7 @@
 #include <semloop/object_map/ObjectFiles.h>
 #include <semloop/object_map/SemanticGraph.h>
 
-#include <filesystem>
 #include <fstream>
-#include <regex>
-#include <vector>
-
-namespace fs = std::filesystem;
 
 namespace semloop
 {
@@ -57,33 +52,20 @@ TriangleMesh surfaceOf(const SceneObject& object)
 	}
 	return surface;
 }
-
-/** Of a run before this one; what else is in the folder stays. */
-void removeMeshes(const fs::path& folder)
-{
-	const std::regex name("[0-9]+_.*\\.ply");
-	std::vector<fs::path> meshes;
-	for (const auto& entry : fs::directory_iterator(folder))
-		if (std::regex_match(entry.path().filename().string(), name))
-			meshes.push_back(entry.path());
-	for (const auto& mesh : meshes) fs::remove(mesh);
-}
 }  // namespace
 
 void writeTrueObjects(
 	const std::string& prefix, const Scene& scene, const std::map<uint32_t, int>& observations)
 {
 	SemanticGraph graph;
-	const fs::path folder = prefix + "_objects";
-	fs::create_directories(folder);
-	removeMeshes(folder);
+	const std::string folder = makeObjectsFolder(prefix);
 	for (const auto& object : scene.objects)
 	{
 		const auto seen = observations.find(object.id);
 		graph.vertices.push_back(
 			vertexOf(object, scene.labels, seen == observations.end() ? 0 : seen->second));
 		savePly(
-			(folder / objectFileName(object.id, scene.labels.name(object.label))).string(),
+			folder + "/" + objectFileName(object.id, scene.labels.name(object.label)),
 			surfaceOf(object), object.T_world_object);
 	}
 	graph.save(prefix + "_objects.json");

@@ -1,6 +1,5 @@
 #include "SimulationFiles.h"
 
-#include <mrpt/core/format.h>
 #include <semloop/config/Error.h>
 #include <semloop/observations/ExternalImages.h>
 
@@ -31,11 +30,12 @@ Trajectory firstOf(Trajectory trajectory, std::size_t count)
 
 std::string colorName(std::size_t frame)
 {
-	return mrpt::format("color_%06zu.jpg", frame);
+	return externalImageName("color", frame, ".jpg");
 }
+
 std::string depthName(std::size_t frame)
 {
-	return mrpt::format("depth_%06zu.bin", frame);
+	return externalImageName("depth", frame, ".bin");
 }
 }  // namespace
 

@@ -1,20 +1,15 @@
 #include "TrueObjects.h"
 
-#include <semloop/config/Error.h>
 #include <semloop/object_map/ObjectFiles.h>
 #include <semloop/object_map/SemanticGraph.h>
 
 #include <Eigen/Geometry>
-#include <filesystem>
 #include <map>
-#include <regex>
 
 namespace semloop
 {
 namespace
 {
-namespace fs = std::filesystem;
-
 using Boxes = std::vector<Eigen::AlignedBox3d>;
 
 Boxes boxesOf(const AnnotatedMesh& mesh)
@@ -87,20 +82,6 @@ std::vector<ObjectSurface> surfacesOf(const AnnotatedMesh& mesh)
 	return surfaces;
 }
 
-/** Makes the folder and removes the meshes of a run before this one; what else is in it stays. */
-void prepareFolder(const fs::path& folder)
-{
-	std::error_code error;
-	fs::create_directories(folder, error);
-	if (error) throw InputError(folder.string() + ": cannot be made (" + error.message() + ")");
-	const std::regex name("[0-9]+_.*\\.ply");
-	std::vector<fs::path> meshes;
-	for (const auto& entry : fs::directory_iterator(folder))
-		if (std::regex_match(entry.path().filename().string(), name))
-			meshes.push_back(entry.path());
-	for (const auto& mesh : meshes) fs::remove(mesh);
-}
-
 }  // namespace
 
 void writeTrueObjects(
@@ -119,14 +100,13 @@ void writeTrueObjects(
 		vertex.observations = observations[i];
 		graph.vertices.push_back(vertex);
 	}
-	const fs::path folder = prefix + "_objects";
-	prepareFolder(folder);
+	const std::string folder = makeObjectsFolder(prefix);
 	auto surfaces = surfacesOf(mesh);
 	for (std::size_t i = 0; i < surfaces.size(); i++)
 		if (const TriangleMesh surface = surfaces[i].finish(); !surface.triangles.empty())
 			savePly(
-				(folder / objectFileName(mesh.objects[i].id, mesh.objects[i].name)).string(),
-				surface, {});
+				folder + "/" + objectFileName(mesh.objects[i].id, mesh.objects[i].name), surface,
+				{});
 	graph.save(prefix + "_objects.json");
 }
 

@@ -26,6 +26,18 @@ TEST(PlyFile, ReadsTextAndCutsAFaceIntoTriangles)
 	ASSERT_EQ(surface.vertices.size(), 4u);
 	EXPECT_EQ(surface.vertices[2], Eigen::Vector3d(1, 1, 0.5));
 	EXPECT_EQ(surface.triangles, (std::vector<Triangle>{{0, 1, 2}, {0, 2, 3}}));
+	EXPECT_TRUE(surface.labels.empty());
+}
+
+TEST(PlyFile, ReadsTheLabelsOfTheVertices)
+{
+	const TemporaryFolder folder;
+	const auto surface = readPly(folder.write(
+		"a.ply",
+		"ply\nformat ascii 1.0\nelement vertex 2\nproperty float x\nproperty uint label\n"
+		"property float y\nproperty float z\nend_header\n1 4294967295 2 3\n4 17 5 6\n"));
+	EXPECT_EQ(surface.labels, (std::vector<double>{4294967295, 17}));
+	EXPECT_EQ(surface.vertices[1], Eigen::Vector3d(4, 5, 6));
 }
 
 TEST(PlyFile, ReadsWhatAnObjectMapWrites)

@@ -11,6 +11,7 @@
 #include <filesystem>
 #include <fstream>
 #include <iterator>
+#include <set>
 
 #include "ObjectMapFixtures.h"
 
@@ -167,5 +168,17 @@ TEST_F(ObjectFiles, TheMetricMapWritesASceneTheMapAndAMeshPerObject)
 	EXPECT_TRUE(scene.loadFromFile(path("out.3Dscene")));
 	EXPECT_EQ(bytesOf(*loadObjectMap(path("out.objmap"))), bytesOf(map));
 	EXPECT_GT(std::filesystem::file_size(path("out_objects/0_cup.ply")), 10000U);
-	EXPECT_GT(std::filesystem::file_size(path("out_objects/1_dining_chair.ply")), 10000U);
+	EXPECT_GT(std::filesystem::file_size(path("out_objects/1_dining-chair.ply")), 10000U);
 }
+
+TEST_F(ObjectFiles, MeshesOfTheMapBeforeAreRemovedAndOtherFilesStay)
+{
+	mapOf(ballAndBox(), {kCup, kChair}).saveMetricMapRepresentationToFile(path("out"));
+	std::ofstream(path("out_objects/notes.txt")) << "mine";
+	mapOf(ballAndBox(), {kChair, kCup}).saveMetricMapRepresentationToFile(path("out"));
+	std::set<std::string> names;
+	for (const auto& entry : std::filesystem::directory_iterator(path("out_objects")))
+		names.insert(entry.path().filename().string());
+	EXPECT_EQ(names, (std::set<std::string>{"0_dining-chair.ply", "1_cup.ply", "notes.txt"}));
+}
+

@@ -168,6 +168,7 @@ void readVertex(const Element& element, Numbers& numbers, Surface& surface)
 		for (double i = 0; i < count; i++) value = numbers.next(property.type);
 		for (int axis = 0; axis < 3; axis++)
 			if (property.name == std::string(1, char('x' + axis))) vertex[axis] = value;
+		if (property.name == "label") surface.labels.push_back(value);
 	}
 	surface.vertices.push_back(vertex);
 }

@@ -13,6 +13,8 @@
 #include <cstring>
 #include <filesystem>
 #include <fstream>
+#include <regex>
+#include <vector>
 
 namespace semloop
 {
@@ -32,14 +34,6 @@ void append(std::string& bytes, Number value)
 	bytes.append(raw, sizeof(Number));
 }
 
-/** A label may hold blanks or slashes; a file name should not. */
-std::string fileName(const std::string& label)
-{
-	std::string name = label;
-	for (char& c : name)
-		if (!std::isalnum(static_cast<unsigned char>(c)) && c != '-') c = '_';
-	return name;
-}
 }  // namespace
 
 void saveObjectMap(const std::string& path, const CObjectMap& map)
@@ -92,6 +86,22 @@ std::string objectFileName(ObjectId id, std::string label)
 	return std::to_string(id) + "_" + label + ".ply";
 }
 
+std::string makeObjectsFolder(const std::string& prefix)
+{
+	namespace fs = std::filesystem;
+	std::string folder = prefix + "_objects";
+	std::error_code error;
+	fs::create_directories(folder, error);
+	if (error) cannotWrite(folder);
+	const std::regex name("[0-9]+_.*\\.ply");
+	std::vector<fs::path> meshes;
+	for (const auto& entry : fs::directory_iterator(folder))
+		if (std::regex_match(entry.path().filename().string(), name))
+			meshes.push_back(entry.path());
+	for (const auto& mesh : meshes) fs::remove(mesh);
+	return folder;
+}
+
 void savePly(
 	const std::string& path, const TriangleMesh& mesh, const mrpt::poses::CPose3D& T_world_object)
 {
@@ -133,14 +143,11 @@ void CObjectMap::saveMetricMapRepresentationToFile(const std::string& filePrefix
 	saveObjectMap(filePrefix + ".objmap", *this);
 	SemanticGraph::fromMap(*this).save(filePrefix + ".json");
 
-	const std::string folder = filePrefix + "_objects";
-	std::error_code error;
-	std::filesystem::create_directories(folder, error);
-	if (error) cannotWrite(folder);
+	const std::string folder = makeObjectsFolder(filePrefix);
 	for (const auto& [id, object] : objects_)
 		savePly(
-			folder + "/" + std::to_string(id) + "_" + fileName(labelName(object)) + ".ply",
-			object.volume->mesh(), object.T_world_object);
+			folder + "/" + objectFileName(id, labelName(object)), object.volume->mesh(),
+			object.T_world_object);
 }
 
 }  // namespace semloop

@@ -15,6 +15,10 @@ CObjectMap::Ptr loadObjectMap(const std::string& path);
  *  digits. */
 std::string objectFileName(ObjectId id, std::string label);
 
+/** The folder `<prefix>_objects` for the meshes of a map's objects: is made, and what a map before left
+ *  under such names is removed. Other files in it stay. Throws InputError when it cannot be made. */
+std::string makeObjectsFolder(const std::string& prefix);
+
 /** Binary PLY of a mesh in world coordinates, with normals and colours. */
 void savePly(const std::string& path, const TriangleMesh& mesh, const mrpt::poses::CPose3D& T_world_object);
 
