@@ -162,7 +162,8 @@ TEST_F(SceneNn2RawlogBadInput, AMeshThatCannotBeUsedIsNamed)
 		"label");
 	expect(ascii + "element vertex 0\n" + xyz + "property int label\nend_header\n", "no vertices");
 	expect(
-		ascii + "element face 1\nproperty list uchar int vertex_indices\nend_header\n", "vertices");
+		ascii + "element face 1\nproperty list uchar int vertex_indices\nend_header\n0\n",
+		"no vertices");
 	Mesh broken = mesh;
 	broken.vertices[1000].p.x = std::nan("");
 	expect(broken.ply(), "not finite");
