@@ -5,6 +5,7 @@ CMAKE_ARGS ?=
 PREFIX ?= /usr/local
 JOBS ?= $(shell nproc)
 SANITIZE := address,undefined
+TSAN = TSAN_OPTIONS=suppressions=$(CURDIR)/cmake/tsan-suppressions.txt
 
 # Continuous integration takes no warning for an answer.
 ifeq ($(CI),true)
@@ -50,8 +51,8 @@ picture: ## draws what the last make demo simulated and mapped: OUT/apartment.pn
 test-sanitize: dependencies ## runs all tests under AddressSanitizer and UndefinedBehaviorSanitizer
 	cmake -S . -B $(BUILD_DIR)-sanitize -G Ninja -DCMAKE_BUILD_TYPE=RelWithDebInfo \
 		-DSEMLOOP_SANITIZE=$(SANITIZE) -DSEMLOOP_BUILD_BENCHMARKS=OFF $(CMAKE_ARGS)
-	TSAN_OPTIONS=report_mutex_bugs=0:suppressions=$(CURDIR)/cmake/tsan-suppressions.txt cmake --build $(BUILD_DIR)-sanitize -j $(JOBS)
-	TSAN_OPTIONS=report_mutex_bugs=0:suppressions=$(CURDIR)/cmake/tsan-suppressions.txt \
+	$(TSAN) cmake --build $(BUILD_DIR)-sanitize -j $(JOBS)
+	$(TSAN) \
 	LSAN_OPTIONS=suppressions=$(CURDIR)/cmake/lsan-suppressions.txt \
 	UBSAN_OPTIONS=print_stacktrace=1:halt_on_error=1:suppressions=$(CURDIR)/cmake/ubsan-suppressions.txt ctest --test-dir $(BUILD_DIR)-sanitize -j $(JOBS) --output-on-failure
 

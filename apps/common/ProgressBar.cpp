@@ -28,11 +28,11 @@ ProgressBar::~ProgressBar()
 	clear();
 }
 
-double ProgressBar::dueAfter()
+std::optional<double> ProgressBar::dueAfter()
 {
 	const auto now = Clock::now();
 	const double elapsed = seconds(now - start_);
-	if (!terminal_ || elapsed < 2.0 || seconds(now - lastDraw_) < 0.2) return 0;
+	if (!terminal_ || elapsed < 2.0 || seconds(now - lastDraw_) < 0.2) return std::nullopt;
 	lastDraw_ = now;
 	drawn_ = true;
 	return elapsed;
@@ -40,24 +40,24 @@ double ProgressBar::dueAfter()
 
 void ProgressBar::updateEndless(std::size_t items, const std::string& note)
 {
-	const double elapsed = dueAfter();
-	if (elapsed == 0) return;
+	const auto elapsed = dueAfter();
+	if (!elapsed) return;
 	std::fprintf(
-		stderr, "\r%s %zu, %.1f/s%s \033[K", what_.c_str(), items, double(items) / elapsed,
+		stderr, "\r%s %zu, %.1f/s%s \033[K", what_.c_str(), items, double(items) / *elapsed,
 		note.c_str());
 }
 
 void ProgressBar::update(std::size_t items, double share)
 {
-	const double elapsed = dueAfter();
-	if (elapsed == 0) return;
+	const auto elapsed = dueAfter();
+	if (!elapsed) return;
 	constexpr int kWidth = 30;
 	share = std::clamp(share, 0.0, 1.0);
 	const std::string bar(std::size_t(share * kWidth), '#');
-	const double left = share > 0 ? elapsed * (1 - share) / share : 0;
+	const double left = share > 0 ? *elapsed * (1 - share) / share : 0;
 	std::fprintf(
 		stderr, "\r%s [%-*s] %3.0f %%  %zu, %.1f/s, %d:%02d left \033[K", what_.c_str(), kWidth,
-		bar.c_str(), 100 * share, items, double(items) / elapsed, int(left) / 60, int(left) % 60);
+		bar.c_str(), 100 * share, items, double(items) / *elapsed, int(left) / 60, int(left) % 60);
 }
 
 void ProgressBar::clear()

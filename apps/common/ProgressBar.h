@@ -2,6 +2,7 @@
 
 #include <chrono>
 #include <cstddef>
+#include <optional>
 #include <string>
 
 namespace semloop
@@ -24,8 +25,8 @@ public:
 private:
 	using Clock = std::chrono::steady_clock;
 
-	/** Seconds since the start when it is time to draw again, else 0. */
-	double dueAfter();
+	/** Seconds since the start when it is time to draw again. */
+	std::optional<double> dueAfter();
 
 	std::string what_;
 	bool terminal_ = false;

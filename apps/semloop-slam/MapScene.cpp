@@ -1,11 +1,11 @@
 #include "MapScene.h"
 
 #include <mrpt/opengl/CArrow.h>
-#include <mrpt/opengl/CSetOfLines.h>
 #include <mrpt/opengl/CSphere.h>
 #include <mrpt/opengl/CText.h>
 #include <semloop/object_map/MeshVisualization.h>
 #include <semloop/observations/CameraFrames.h>
+#include <semloop/slam/PathLine.h>
 
 #include <algorithm>
 #include <cmath>
@@ -18,22 +18,10 @@ namespace semloop
 namespace
 {
 const TColor kBackground(244, 245, 248), kFloor(205, 208, 214);
-const TColor kPath(0, 90, 200), kOdometryPath(150, 150, 150), kLoop(230, 110, 0);
+const TColor kLoop(230, 110, 0);
 constexpr float kAmbient = 0.5f;         // share of the light
 constexpr float kFloorHalfSize = 10.0f;  // [m]
 constexpr float kCameraLength = 0.35f;   // of the drawn pyramid [m]
-
-/** Dots along the way, too: the window's lines are one pixel wide at most. */
-CSetOfLines::Ptr pathLine(
-	const std::vector<mrpt::math::TPoint3D>& path, const TColor& color, float dotSize)
-{
-	auto result = CSetOfLines::Create();
-	result->setColor_u8(color);
-	result->enableAntiAliasing(false);
-	result->setVerticesPointSize(dotSize);
-	for (std::size_t i = 1; i < path.size(); ++i) result->appendLine(path[i - 1], path[i]);
-	return result;
-}
 
 /** Height of the lowest object's lower side, as far as its axes are still parallel to the world's. */
 double floorHeight(const CObjectMap& map)
@@ -65,7 +53,7 @@ MapScene::MapScene(COpenGLViewport& view)
 	view.lightParameters().ambient = mrpt::img::TColorf(kAmbient, kAmbient, kAmbient);
 	floor_->setColor_u8(kFloor);
 	camera_->setNearFarPlanes(0.01f, kCameraLength);
-	camera_->setColor_u8(kPath);
+	camera_->setColor_u8(kTrajectoryColor);
 	camera_->setVisibility(false);
 	view.insert(floor_);
 	view.insert(surfaceSet_);
@@ -95,8 +83,8 @@ void MapScene::showMap(MapSnapshot&& snapshot)
 	floor_->setPlaneZcoord(float(floorHeight(snapshot.map)));
 	paths_->clear();
 	// What is drawn first stays on top where both are one.
-	paths_->insert(pathLine(snapshot.path, kPath, 4));
-	paths_->insert(pathLine(snapshot.odometryPath, kOdometryPath, 3));
+	paths_->insert(pathLine(snapshot.trajectory, kTrajectoryColor, 4));
+	paths_->insert(pathLine(snapshot.odometryTrajectory, kOdometryColor, 3));
 	showLoop(snapshot.lastLoop);
 }
 

@@ -44,7 +44,7 @@ std::string MappingLoop::run(FrameSource& recording)
 	}
 	catch (const std::exception& e)
 	{
-		warn(recording.skippedAtEnd());
+		warn(recording.takeSkipped());
 		return info_.endedBy = exceptionMessage(e);
 	}
 	return {};
@@ -64,7 +64,7 @@ bool MappingLoop::wantsMore()
 bool MappingLoop::mapNext(FrameSource& recording)
 {
 	const auto frame = recording.next();
-	warn(frame ? frame->skipped : recording.skippedAtEnd());
+	warn(recording.takeSkipped());
 	if (!frame) return false;
 	slam_.process(*frame);
 	bar_.update(slam_.frameCount(), frame->progress);

@@ -71,13 +71,11 @@ void useRecordedInstances(mrpt::config::CConfigFileBase& config, const SlamRunAr
 
 void printSummary(const SlamRunArguments& arguments, const SemanticSlam& slam, const RunInfo& info)
 {
-	std::size_t accepted = 0;
-	for (const auto& record : slam.loops())
-		accepted += record.verdict.decision == LoopVerdict::Decision::Accepted;
 	std::printf(
 		"%zu frames (%zu skipped, %zu lost) in %.1f s, %zu objects, %zu loops closed: %s\n",
 		slam.frameCount(), info.skippedFrames, slam.lostFrameCount(), info.wallSeconds,
-		slam.map().objects().size(), accepted, arguments.output.c_str());
+		slam.map().objects().size(), countLoops(slam.loops(), LoopVerdict::Decision::Accepted),
+		arguments.output.c_str());
 }
 
 void printWarning(const std::string& warning)

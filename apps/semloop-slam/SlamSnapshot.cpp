@@ -10,27 +10,18 @@ constexpr std::chrono::milliseconds kBetweenMaps(300);
 constexpr std::chrono::seconds kBetweenRates(1);
 constexpr int kInverseShareOfMaps = 20;  // of the run's time
 
-std::vector<mrpt::math::TPoint3D> positions(const Trajectory& trajectory)
+void takeLoops(const std::vector<LoopRecord>& loops, MapSnapshot& snapshot)
 {
-	std::vector<mrpt::math::TPoint3D> result;
-	result.reserve(trajectory.size());
-	for (const auto& stamped : trajectory) result.push_back(stamped.pose.translation());
-	return result;
-}
-
-void countLoops(const std::vector<LoopRecord>& loops, MapSnapshot& snapshot)
-{
-	for (const auto& loop : loops)
-	{
-		if (loop.verdict.decision != LoopVerdict::Decision::Accepted)
-		{
-			++snapshot.loopsRejected;
-			continue;
-		}
-		++snapshot.loopsAccepted;
-		snapshot.lastLoopFrame = loop.frame;
-		snapshot.lastLoop = loop.matched;
-	}
+	using Decision = LoopVerdict::Decision;
+	snapshot.loopsAccepted = countLoops(loops, Decision::Accepted);
+	snapshot.loopsAmbiguous = countLoops(loops, Decision::Ambiguous);
+	snapshot.loopsRejected = countLoops(loops, Decision::Rejected);
+	const auto last = std::find_if(
+		loops.rbegin(), loops.rend(),
+		[](const LoopRecord& loop) { return loop.verdict.decision == Decision::Accepted; });
+	if (last == loops.rend()) return;
+	snapshot.lastLoopFrame = last->frame;
+	snapshot.lastLoop = last->matched;
 }
 }  // namespace
 
@@ -62,9 +53,9 @@ MapSnapshot SnapshotTaker::takeMap(const SemanticSlam& slam, const StageTimings&
 {
 	MapSnapshot snapshot;
 	snapshot.map = slam.map();
-	snapshot.path = positions(slam.trajectory());
-	snapshot.odometryPath = positions(slam.odometryTrajectory());
-	countLoops(slam.loops(), snapshot);
+	snapshot.trajectory = slam.trajectory();
+	snapshot.odometryTrajectory = slam.odometryTrajectory();
+	takeLoops(slam.loops(), snapshot);
 	updateRates(slam, timings);
 	snapshot.framesPerSecond = framesPerSecond_;
 	snapshot.stages = stages_;

@@ -1,9 +1,9 @@
 #pragma once
 
 #include <mrpt/img/TCamera.h>
-#include <mrpt/math/TPoint3D.h>
 #include <mrpt/poses/CPose3D.h>
 #include <semloop/object_map/CObjectMap.h>
+#include <semloop/observations/Trajectory.h>
 #include <semloop/slam/SemanticSlam.h>
 #include <semloop/slam/SlamFrame.h>
 #include <semloop/slam/StageTimings.h>
@@ -21,7 +21,7 @@ namespace semloop
 /** What the window shows and cannot know from the run's data. */
 struct WindowNews
 {
-	std::size_t dropped = 0;  //!< frames that came while the mapping was busy
+	std::size_t dropped = 0;  //!< SensorCounts::dropped: not only frames; 0 without a sensor
 	std::string status;  //!< one line for a person, e.g. "no frame for 2 s"; empty: nothing to tell
 };
 
@@ -36,8 +36,8 @@ struct StageRate
 struct MapSnapshot
 {
 	CObjectMap map;  //!< shares its volumes with the run's map
-	std::vector<mrpt::math::TPoint3D> path, odometryPath;  //!< of the camera, in the world [m]
-	std::size_t loopsAccepted = 0, loopsRejected = 0;
+	Trajectory trajectory, odometryTrajectory;
+	std::size_t loopsAccepted = 0, loopsAmbiguous = 0, loopsRejected = 0;
 	std::optional<std::size_t> lastLoopFrame;  //!< of the last accepted loop
 	std::vector<MatchedObjects> lastLoop;      //!< its matches
 	double framesPerSecond = 0.0;              //!< mapped, over the last second or two

@@ -147,8 +147,8 @@ void WindowView::showNumbers(const SlamSnapshot& snapshot)
 	if (const auto& map = snapshot.map)
 	{
 		loops_ = mrpt::format(
-			"objects: %zu\nloops: %zu closed, %zu rejected\n", map->map.objects().size(),
-			map->loopsAccepted, map->loopsRejected);
+			"objects: %zu\nloops closed: %zu\n%zu ambiguous, %zu rejected\n",
+			map->map.objects().size(), map->loopsAccepted, map->loopsAmbiguous, map->loopsRejected);
 		if (map->lastLoopFrame)
 			loops_ += mrpt::format(
 				"last loop: frame %zu, %zu objects\n", *map->lastLoopFrame, map->lastLoop.size());

@@ -155,6 +155,33 @@ TEST_F(SemloopSlamBadInput, InstancesInTheRawlogOfAnotherImageSizeEndTheRunToo)
 	EXPECT_THAT(messages(), AllOf(HasSubstr("merged.rawlog"), HasSubstr("rawlog-segment")));
 }
 
+TEST_F(SemloopSlamBadInput, OfFramesBehindTheOneThatEndsTheRunNothingIsTold)
+{
+	RecordedRun merged = recorded_;
+	merged.rawlog = folder_.file("merged.rawlog");
+	RawlogReader reader(recorded_.rawlog);
+	RawlogWriter writer(merged.rawlog);
+	for (int index = 0; const auto observation = reader.next();)
+	{
+		const auto scan = std::dynamic_pointer_cast<CObservation3DRangeScan>(observation);
+		if (!scan) continue;
+		// They are read ahead while the one before is mapped.
+		if (index > 3) scan->hasRangeImage = false;
+		writer.write(*scan);
+		CObservationInstances instances;
+		instances.timestamp = frameTime(index);
+		instances.camera = smallCamera();
+		instances.labels = index < 3 ? roomLabels() : LabelSet({"door", "window"});
+		writer.write(instances);
+		++index;
+	}
+	writer.close();
+	EXPECT_EQ(run(arguments(merged)), 1);
+	expectResultsSoFar(4);
+	EXPECT_THAT(messages(), HasSubstr("their label set is not that of the instances before"));
+	EXPECT_EQ(summary()["frames_skipped"], 0);
+}
+
 TEST_F(SemloopSlamBadInput, InstancesOfAnotherRecordingAreWarnedAbout)
 {
 	const RecordedRun scans = changed(recorded_, [](int, CObservation3DRangeScan&) {});

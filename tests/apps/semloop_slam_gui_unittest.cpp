@@ -53,7 +53,7 @@ protected:
 		// No frames ahead: while the program waits for a frame, it has mapped all before.
 		program_ = std::make_unique<ChildProcess>(
 			std::vector<std::string>{
-				SEMLOOP_SOURCE_DIR "/tests/apps/on_xvfb.sh", folder_.file("screen"), kProgram,
+				SEMLOOP_SOURCE_DIR "/tests/common/on_xvfb.sh", folder_.file("screen"), kProgram,
 				"--gui", "-c", kConfig, "-i", held.rawlog, "-o", folder_.file("result"),
 				"--instances", recorded_.rawlog, "--set", "odometry.file=" + recorded_.truth,
 				"--set", "slam.frames_ahead=0"},

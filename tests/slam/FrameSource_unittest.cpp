@@ -4,6 +4,9 @@
 #include <semloop/slam/Configuration.h>
 #include <semloop/slam/FrameSource.h>
 
+#include <chrono>
+#include <thread>
+
 #include "SyntheticRun.h"
 
 using namespace semloop;
@@ -36,28 +39,39 @@ Collected readAll(const std::string& rawlog, int framesAhead)
 {
 	StageTimings timings;
 	FrameSource source(
-		std::make_unique<RawlogReader>(rawlog), {std::make_shared<NoSegmenter>(), nullptr}, framesAhead, timings);
+		std::make_unique<RawlogReader>(rawlog), {std::make_shared<NoSegmenter>(), nullptr},
+		framesAhead, timings);
 	Collected all;
 	try
 	{
-		while (auto frame = source.next())
-		{
-			all.skipped.insert(all.skipped.end(), frame->skipped.begin(), frame->skipped.end());
-			all.frames.push_back(std::move(*frame));
-		}
-		const auto& rest = source.skippedAtEnd();
-		all.skipped.insert(all.skipped.end(), rest.begin(), rest.end());
+		while (auto frame = source.next()) all.frames.push_back(std::move(*frame));
 	}
 	catch (const InputError& e)
 	{
 		all.error = e.what();
 	}
+	all.skipped = source.takeSkipped();
 	return all;
 }
 
 View smallView(double degrees)
 {
 	return renderView(roomScene(8), smallCamera(), cameraOnCircle(degrees));
+}
+
+/** A recording in which 'x' is a frame without depth and '.' is one with. */
+std::string recordFrames(const TemporaryFolder& folder, const std::string& frames)
+{
+	const std::string path = folder.file("x.rawlog");
+	RawlogWriter writer(path);
+	for (std::size_t i = 0; i < frames.size(); ++i)
+	{
+		View view = smallView(5 * double(i));
+		if (frames[i] == 'x') view.frame.depth.setTo(0);
+		writer.write(scanOf(view, int(i)));
+	}
+	writer.close();
+	return path;
 }
 }  // namespace
 
@@ -87,15 +101,7 @@ TEST_P(FrameSourceTest, GivesEveryFrameInOrderWithTheInstancesMergedIntoTheRawlo
 TEST_P(FrameSourceTest, SkipsAFrameWithoutDepthAndSaysSo)
 {
 	const TemporaryFolder folder;
-	const std::string path = folder.file("x.rawlog");
-	RawlogWriter writer(path);
-	for (int i = 0; i < 3; ++i)
-	{
-		View view = smallView(5 * i);
-		if (i == 1) view.frame.depth.setTo(0);
-		writer.write(scanOf(view, i));
-	}
-	writer.close();
+	const std::string path = recordFrames(folder, ".x.");
 	const Collected all = readAll(path, GetParam());
 	EXPECT_EQ(all.frames.size(), 2u);
 	ASSERT_EQ(all.skipped.size(), 1u);
@@ -106,16 +112,27 @@ TEST_P(FrameSourceTest, SkipsAFrameWithoutDepthAndSaysSo)
 TEST_P(FrameSourceTest, ADamagedLastFrameIsToldAtTheEnd)
 {
 	const TemporaryFolder folder;
-	const std::string path = folder.file("x.rawlog");
-	RawlogWriter writer(path);
-	View view = smallView(0);
-	writer.write(scanOf(view, 0));
-	view.frame.depth.setTo(0);
-	writer.write(scanOf(view, 1));
-	writer.close();
-	const Collected all = readAll(path, GetParam());
+	const Collected all = readAll(recordFrames(folder, ".x"), GetParam());
 	EXPECT_EQ(all.frames.size(), 1u);
 	EXPECT_EQ(all.skipped.size(), 1u);
+}
+
+TEST(FrameSource, TellsAWarningWithTheFrameBehindItHoweverFarAheadItHasRead)
+{
+	const TemporaryFolder folder;
+	const std::string path = recordFrames(folder, ".x.xx");
+	StageTimings timings;
+	FrameSource source(
+		std::make_unique<RawlogReader>(path), {std::make_shared<NoSegmenter>(), nullptr}, 4,
+		timings);
+	while (timings.totals()["read"].count < 5)
+		std::this_thread::sleep_for(std::chrono::milliseconds(1));
+	std::vector<std::size_t> told;
+	do told.push_back(source.takeSkipped().size());
+	while (source.next());
+	told.push_back(source.takeSkipped().size());
+	// Before the first frame, with it, with the second, at the end.
+	EXPECT_EQ(told, (std::vector<std::size_t>{0, 0, 1, 2}));
 }
 
 TEST_P(FrameSourceTest, TimeGoingBackwardsEndsTheRunAfterTheGoodFrames)
@@ -152,6 +169,7 @@ TEST_P(FrameSourceTest, CanBeLeftInTheMiddle)
 	const RecordedRun run = recordRun(folder, options);
 	StageTimings timings;
 	FrameSource source(
-		std::make_unique<RawlogReader>(run.rawlog), {std::make_shared<NoSegmenter>(), nullptr}, GetParam(), timings);
+		std::make_unique<RawlogReader>(run.rawlog), {std::make_shared<NoSegmenter>(), nullptr},
+		GetParam(), timings);
 	EXPECT_TRUE(source.next());
 }

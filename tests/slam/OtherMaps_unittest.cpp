@@ -1,6 +1,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <mrpt/io/CFileGZInputStream.h>
+#include <mrpt/io/CMemoryStream.h>
 #include <mrpt/maps/COccupancyGridMap2D.h>
 #include <mrpt/maps/COccupancyGridMap3D.h>
 #include <mrpt/maps/COctoMap.h>
@@ -100,6 +101,13 @@ CConfigFileMemory definition(const std::string& text)
 const char* const kPoints =
 	"pointsMap_count = 1\n"
 	"[semloop_map_pointsMap_00_insertOpts]\nminDistBetweenLaserPoints = 0.05\n";
+
+std::string bytesOf(const mrpt::maps::CMetricMap& map)
+{
+	mrpt::io::CMemoryStream stream;
+	mrpt::serialization::archiveFrom(stream) << map;
+	return {static_cast<const char*>(stream.getRawBufferData()), stream.getTotalBytesCount()};
+}
 
 void expectUsageError(const CConfigFileMemory& config, const ::testing::Matcher<std::string>& what)
 {
@@ -210,6 +218,24 @@ TEST(OtherMaps, EveryKindThatTakesPointsOrScansIsFilledAndSaved)
 
 	writeOtherMaps(folder, {}, mrpt::maps::CMultiMetricMap());
 	EXPECT_FALSE(std::filesystem::exists(folder));
+}
+
+TEST(OtherMaps, AMapIsTheSameAloneAndBesideOthers)
+{
+	const Room room(0, 100);
+	const std::vector<std::string> kinds = {"COccupancyGridMap3D", "colourPointsMap", "objectMap",
+											"occupancyGrid",       "octoMap",         "pointsMap"};
+	std::string all;
+	for (const auto& kind : kinds) all += kind + "_count = 1\n";
+	const OtherMaps together(definition(all));
+	const auto maps = together.build(*room.slam);
+	for (const auto& kind : kinds)
+	{
+		const auto alone = room.maps(definition(kind + "_count = 1\n"));
+		const auto& names = together.names();
+		const auto at = std::find(names.begin(), names.end(), kind + "_00") - names.begin();
+		EXPECT_TRUE(bytesOf(*maps->maps[std::size_t(at)]) == bytesOf(*alone->maps[0])) << kind;
+	}
 }
 
 TEST(OtherMaps, NothingIsRemovedThatNoRunWrote)

@@ -28,6 +28,15 @@ TEST(StageTimings, TotalsAreCountAndSum)
 	EXPECT_DOUBLE_EQ(timings.totals().at("fusion").milliseconds, 5050);
 }
 
+TEST(StageTimings, TheSummaryHasTheTotalItself)
+{
+	StageTimings timings;
+	// A tenth is no float: the sum of rounded samples is another one.
+	for (int i = 0; i < 3; ++i) timings.add("read", 0.1);
+	EXPECT_EQ(timings.totals().at("read").milliseconds, 0.1 + 0.1 + 0.1);
+	EXPECT_EQ(timings.summaries().at("read").milliseconds, 0.1 + 0.1 + 0.1);
+}
+
 TEST(StageTimings, OneSampleIsEveryPercentile)
 {
 	StageTimings timings;

@@ -29,7 +29,6 @@ std::optional<SlamFrame> FrameBuilder::take(const mrpt::obs::CObservation::Ptr& 
 	frame.rgbd = std::move(*images);
 	frame.scan = scan;
 	frame.before = std::exchange(others_, {});
-	frame.skipped = std::exchange(skipped_, {});
 	return frame;
 }
 

@@ -24,20 +24,20 @@ public:
 	explicit Queue(std::size_t capacity) : capacity_(capacity) {}
 
 	/** False when nobody wants more. */
-	bool push(SlamFrame frame)
+	bool push(Step step)
 	{
 		std::unique_lock lock(mutex_);
-		changed_.wait(lock, [&] { return frames_.size() < capacity_ || stopped_; });
+		changed_.wait(lock, [&] { return steps_.size() < capacity_ || stopped_; });
 		if (stopped_) return false;
-		frames_.push_back(std::move(frame));
+		steps_.push_back(std::move(step));
 		changed_.notify_all();
 		return true;
 	}
-	void finish(std::exception_ptr error)
+	void finish(Step last)
 	{
 		const std::lock_guard lock(mutex_);
 		finished_ = true;
-		error_ = std::move(error);
+		last_ = std::move(last);
 		changed_.notify_all();
 	}
 	void stop()
@@ -46,29 +46,25 @@ public:
 		stopped_ = true;
 		changed_.notify_all();
 	}
-	std::optional<SlamFrame> pop()
+	Step pop()
 	{
 		std::unique_lock lock(mutex_);
-		changed_.wait(lock, [&] { return !frames_.empty() || finished_; });
-		if (frames_.empty())
-		{
-			if (error_) std::rethrow_exception(std::exchange(error_, nullptr));
-			return std::nullopt;
-		}
-		SlamFrame frame = std::move(frames_.front());
-		frames_.pop_front();
+		changed_.wait(lock, [&] { return !steps_.empty() || finished_; });
+		if (steps_.empty()) return std::exchange(last_, {});
+		Step step = std::move(steps_.front());
+		steps_.pop_front();
 		changed_.notify_all();
-		return frame;
+		return step;
 	}
 
 private:
 	const std::size_t capacity_;
 	std::mutex mutex_;
 	std::condition_variable changed_;
-	std::deque<SlamFrame> frames_;
+	std::deque<Step> steps_;
 	bool finished_ = false;
 	bool stopped_ = false;
-	std::exception_ptr error_;
+	Step last_;
 };
 
 FrameSource::FrameSource(
@@ -84,18 +80,14 @@ FrameSource::FrameSource(
 	thread_ = std::thread(
 		[this]
 		{
-			std::exception_ptr error;
-			try
+			Step next = step();
+			while (next.frame)
 			{
-				while (auto frame = produce())
-					if (!queue_->push(std::move(*frame))) break;
-			}
-			catch (...)
-			{
-				error = std::current_exception();
+				if (!queue_->push(std::move(next))) return;
+				next = step();
 			}
 			// Moved: the last to hold the exception must be the consumer, who may still read it.
-			queue_->finish(std::move(error));
+			queue_->finish(std::move(next));
 		});
 }
 
@@ -107,7 +99,30 @@ FrameSource::~FrameSource()
 
 std::optional<SlamFrame> FrameSource::next()
 {
-	return queue_ ? queue_->pop() : produce();
+	Step next = queue_ ? queue_->pop() : step();
+	skipped_.insert(skipped_.end(), next.skipped.begin(), next.skipped.end());
+	if (next.error) std::rethrow_exception(std::move(next.error));
+	return std::move(next.frame);
+}
+
+std::vector<std::string> FrameSource::takeSkipped()
+{
+	return std::exchange(skipped_, {});
+}
+
+FrameSource::Step FrameSource::step()
+{
+	Step result;
+	try
+	{
+		result.frame = produce();
+	}
+	catch (...)
+	{
+		result.error = std::current_exception();
+	}
+	result.skipped = builder_.takeSkipped();
+	return result;
 }
 
 mrpt::obs::CObservation::Ptr FrameSource::read()

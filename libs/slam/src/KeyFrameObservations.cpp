@@ -46,11 +46,11 @@ CObservation3DRangeScan unprojected(const CObservation3DRangeScan& scan, double 
 	result.maxRange = float(maxDepth);
 	result.hasRangeImage = true;
 	result.rangeImage = scan.rangeImage;
+	cutDepth(result, maxDepth);
 	auto& depth = result.rangeImage;
-	const double limit = maxDepth / scan.rangeUnits;
 	for (int v = 0; v < depth.rows(); ++v)
 		for (int u = 0; u < depth.cols(); ++u)
-			if (depth(v, u) > limit || v % step != 0 || u % step != 0) depth(v, u) = 0;
+			if (v % step != 0 || u % step != 0) depth(v, u) = 0;
 	mrpt::obs::T3DPointsProjectionParams params;
 	params.takeIntoAccountSensorPoseOnRobot = false;
 	// Its own decimation wants sizes that are multiples of it.
@@ -80,6 +80,13 @@ CObservation2DRangeScan::Ptr horizontalScan(
 	return result;
 }
 }  // namespace
+
+void cutDepth(CObservation3DRangeScan& scan, double maxDepth)
+{
+	const double limit = maxDepth / scan.rangeUnits;
+	for (auto& value : scan.rangeImage)
+		if (value > limit) value = 0;
+}
 
 KeyFrameObservations keyFrameObservations(
 	const SemanticSlam& slam, const SemanticSlam::KeyFrame& key)

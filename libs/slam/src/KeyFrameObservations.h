@@ -1,5 +1,6 @@
 #pragma once
 
+#include <mrpt/obs/CObservation3DRangeScan.h>
 #include <mrpt/obs/CSensoryFrame.h>
 #include <semloop/slam/SemanticSlam.h>
 
@@ -20,5 +21,8 @@ struct KeyFrameObservations
 /** Throws InputError when an external image of the scan cannot be read. */
 KeyFrameObservations keyFrameObservations(
 	const SemanticSlam& slam, const SemanticSlam::KeyFrame& key);
+
+/** Takes the depth beyond maxDepth [m] out of the image; its points stay. */
+void cutDepth(mrpt::obs::CObservation3DRangeScan& scan, double maxDepth);
 
 }  // namespace semloop

@@ -61,7 +61,7 @@ void LiveFrames::trackAll()
 	{
 		if (!isWanted()) return;
 		auto frame = builder_.take(observation);
-		keepSkipped(frame ? std::exchange(frame->skipped, {}) : builder_.takeSkipped());
+		keepSkipped(builder_.takeSkipped());
 		if (frame) trackFrame(std::move(*frame));
 	}
 }

@@ -1,6 +1,7 @@
 #include <semloop/observations/UnixTime.h>
 #include <semloop/slam/RunResults.h>
 
+#include <algorithm>
 #include <nlohmann/json.hpp>
 
 namespace semloop
@@ -52,6 +53,13 @@ nlohmann::ordered_json toJson(const LoopRecord& record)
 	return line;
 }
 }  // namespace
+
+std::size_t countLoops(const std::vector<LoopRecord>& loops, LoopVerdict::Decision decision)
+{
+	return std::size_t(std::count_if(
+		loops.begin(), loops.end(),
+		[&](const LoopRecord& loop) { return loop.verdict.decision == decision; }));
+}
 
 std::string loopsAsJsonLines(const std::vector<LoopRecord>& loops)
 {

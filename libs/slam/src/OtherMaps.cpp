@@ -123,28 +123,20 @@ catch (const std::exception& e)
 	throw UsageError(place + ": the map cannot be made of its options: " + exceptionMessage(e));
 }
 
-/** Without what is too far to trust, for maps that look at the image and not at the points. */
-void cutDepth(CObservation3DRangeScan& scan, double maxDepth)
-{
-	const double limit = maxDepth / scan.rangeUnits;
-	for (auto& value : scan.rangeImage)
-		if (value > limit) value = 0;
-}
-
 /** A map that takes the points gets no horizontal scan. */
-void insert(const KeyFrameObservations& observations, double maxDepth, mrpt::maps::CMetricMap& map)
+void insert(const KeyFrameObservations& observations, mrpt::maps::CMetricMap& map)
 {
+	// It leaves other points in the scan than it found, for the maps behind it.
+	const bool spoils = dynamic_cast<mrpt::maps::COccupancyGridMap3D*>(&map) != nullptr;
 	bool hasPoints = false;
 	for (const auto& observation : *observations.frame)
 	{
 		const auto& isA = observation->GetRuntimeClass();
 		if (hasPoints && isA == CLASS_ID(mrpt::obs::CObservation2DRangeScan)) continue;
-		// A copy: COccupancyGridMap3D leaves fewer points in the scan than it found.
-		const auto copy =
-			std::dynamic_pointer_cast<mrpt::obs::CObservation>(observation->duplicateGetSmartPtr());
-		if (auto* const scan = dynamic_cast<CObservation3DRangeScan*>(copy.get()))
-			cutDepth(*scan, maxDepth);
-		const bool taken = map.insertObservation(*copy, observations.T_world_robot);
+		const auto given = spoils ? std::dynamic_pointer_cast<mrpt::obs::CObservation>(
+										observation->duplicateGetSmartPtr())
+								  : observation;
+		const bool taken = map.insertObservation(*given, observations.T_world_robot);
 		hasPoints = hasPoints || (taken && isA == CLASS_ID(CObservation3DRangeScan));
 	}
 }
@@ -204,8 +196,11 @@ mrpt::maps::CMultiMetricMap::Ptr OtherMaps::build(const SemanticSlam& slam) cons
 	for (const auto& key : slam.keyFrames())
 	{
 		const auto observations = keyFrameObservations(slam, key);
-		for (const auto& map : maps->maps)
-			insert(observations, slam.map().insertionOptions.maxDepth, *map);
+		// Without what is too far to trust, for maps that look at the image and not at the points.
+		cutDepth(
+			*observations.frame->getObservationByClass<CObservation3DRangeScan>(),
+			slam.map().insertionOptions.maxDepth);
+		for (const auto& map : maps->maps) insert(observations, *map);
 	}
 	return maps;
 }

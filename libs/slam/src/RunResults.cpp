@@ -1,12 +1,12 @@
 #include <mrpt/maps/CSimpleMap.h>
 #include <mrpt/opengl/COpenGLScene.h>
-#include <mrpt/opengl/CSetOfLines.h>
 #include <mrpt/opengl/stock_objects.h>
 #include <mrpt/poses/CPose3DPDFGaussian.h>
 #include <semloop/config/Error.h>
 #include <semloop/object_map/ObjectFiles.h>
 #include <semloop/object_map/SemanticGraph.h>
 #include <semloop/pose_graph/G2oFile.h>
+#include <semloop/slam/PathLine.h>
 #include <semloop/slam/RunResults.h>
 #include <sys/resource.h>
 
@@ -64,17 +64,6 @@ void writeSimpleMap(const fs::path& path, const SemanticSlam& slam)
 	requireWritten(map.saveToFile(path.string()), path);
 }
 
-mrpt::opengl::CSetOfLines::Ptr pathLine(
-	const Trajectory& trajectory, const mrpt::img::TColor& color)
-{
-	auto line = mrpt::opengl::CSetOfLines::Create();
-	line->setColor_u8(color);
-	line->setLineWidth(2);
-	for (std::size_t i = 1; i < trajectory.size(); ++i)
-		line->appendLine(trajectory[i - 1].pose.translation(), trajectory[i].pose.translation());
-	return line;
-}
-
 void writeScene(const fs::path& path, const SemanticSlam& slam)
 {
 	mrpt::opengl::COpenGLScene scene;
@@ -82,10 +71,10 @@ void writeScene(const fs::path& path, const SemanticSlam& slam)
 	objects->setName("objects");
 	slam.map().getVisualizationInto(*objects);
 	scene.insert(objects);
-	auto estimated = pathLine(slam.trajectory(), {0, 90, 200});
+	auto estimated = pathLine(slam.trajectory(), kTrajectoryColor);
 	estimated->setName("trajectory");
 	scene.insert(estimated);
-	auto odometry = pathLine(slam.odometryTrajectory(), {170, 170, 170});
+	auto odometry = pathLine(slam.odometryTrajectory(), kOdometryColor);
 	odometry->setName("odometry");
 	scene.insert(odometry);
 	scene.insert(mrpt::opengl::stock_objects::CornerXYZ(0.3f));
@@ -97,14 +86,6 @@ double peakMemoryMegabytes()
 	rusage usage{};
 	getrusage(RUSAGE_SELF, &usage);
 	return double(usage.ru_maxrss) / 1024.0;
-}
-
-std::size_t countLoops(const SemanticSlam& slam, LoopVerdict::Decision decision)
-{
-	const auto& loops = slam.loops();
-	return std::size_t(std::count_if(
-		loops.begin(), loops.end(),
-		[&](const LoopRecord& r) { return r.verdict.decision == decision; }));
 }
 
 double pathLength(const Trajectory& trajectory)
@@ -130,7 +111,7 @@ std::string summary(const SemanticSlam& slam, const RunInfo& info, const StageTi
 		const auto it = stages.find(stage);
 		return it == stages.end()
 				   ? 0.0
-				   : it->second.total / double(std::max<std::size_t>(1, slam.frameCount()));
+				   : it->second.milliseconds / double(std::max<std::size_t>(1, slam.frameCount()));
 	};
 
 	nlohmann::ordered_json json;
@@ -157,8 +138,8 @@ std::string summary(const SemanticSlam& slam, const RunInfo& info, const StageTi
 	json["objects"] = slam.map().objects().size();
 	json["objects_by_label"] = labels;
 	json["loops_tried"] = slam.loops().size();
-	json["loops_accepted"] = countLoops(slam, LoopVerdict::Decision::Accepted);
-	json["loops_ambiguous"] = countLoops(slam, LoopVerdict::Decision::Ambiguous);
+	json["loops_accepted"] = countLoops(slam.loops(), LoopVerdict::Decision::Accepted);
+	json["loops_ambiguous"] = countLoops(slam.loops(), LoopVerdict::Decision::Ambiguous);
 	json["graph_nodes"] = slam.poseGraph().nodes().size();
 	json["graph_edges"] = slam.poseGraph().edges().size();
 	json["wall_seconds"] = info.wallSeconds;

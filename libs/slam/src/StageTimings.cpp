@@ -5,7 +5,6 @@
 #include <cmath>
 #include <cstdio>
 #include <fstream>
-#include <numeric>
 
 namespace semloop
 {
@@ -28,30 +27,31 @@ StageTimings::Scope::~Scope()
 void StageTimings::add(const std::string& stage, double milliseconds)
 {
 	const std::lock_guard lock(mutex_);
-	samples_[stage].push_back(float(milliseconds));
-	Total& total = totals_[stage];
-	++total.count;
-	total.milliseconds += milliseconds;
+	Stage& s = stages_[stage];
+	s.samples.push_back(float(milliseconds));
+	s.total += milliseconds;
 }
 
 std::map<std::string, StageTimings::Total> StageTimings::totals() const
 {
 	const std::lock_guard lock(mutex_);
-	return totals_;
+	std::map<std::string, Total> result;
+	for (const auto& [name, stage] : stages_) result[name] = {stage.samples.size(), stage.total};
+	return result;
 }
 
 std::map<std::string, StageTimings::Summary> StageTimings::summaries() const
 {
 	const std::lock_guard lock(mutex_);
 	std::map<std::string, Summary> result;
-	for (const auto& [stage, samples] : samples_)
+	for (const auto& [name, stage] : stages_)
 	{
-		std::vector<float> sorted = samples;
+		std::vector<float> sorted = stage.samples;
 		std::sort(sorted.begin(), sorted.end());
-		Summary& s = result[stage];
+		Summary& s = result[name];
 		s.count = sorted.size();
-		s.total = std::accumulate(sorted.begin(), sorted.end(), 0.0);
-		s.mean = s.total / double(s.count);
+		s.milliseconds = stage.total;
+		s.mean = s.milliseconds / double(s.count);
 		s.p50 = percentile(sorted, 0.50);
 		s.p95 = percentile(sorted, 0.95);
 		s.max = sorted.back();

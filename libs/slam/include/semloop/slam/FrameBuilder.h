@@ -12,7 +12,7 @@ namespace semloop
 /** Makes frames of observations, one observation after the other.
  *
  *  A frame that cannot be used (image missing or unreadable, sizes that do not fit, no valid depth)
- *  is skipped and told in SlamFrame::skipped of the next one. */
+ *  is skipped and told by takeSkipped(). */
 class FrameBuilder
 {
 public:
@@ -29,9 +29,7 @@ public:
 	/** A frame, neither segmented nor rectified, when the observation is an RGB-D scan that can be
 	 *  used. Throws InputError when time goes backwards and Disorder says so. */
 	std::optional<SlamFrame> take(const mrpt::obs::CObservation::Ptr& observation);
-	/** Warnings about frames behind the last good one. */
-	const std::vector<std::string>& skippedSince() const { return skipped_; }
-	/** Same, and forgets them. */
+	/** Warnings about frames that could not be used, since the last call. */
 	std::vector<std::string> takeSkipped();
 
 private:

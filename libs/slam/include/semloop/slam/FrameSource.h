@@ -32,12 +32,21 @@ public:
 
 	/** Empty at the end of the recording. */
 	std::optional<SlamFrame> next();
-	/** Warnings about frames behind the last good one; complete when next() has ended. */
-	const std::vector<std::string>& skippedAtEnd() const { return builder_.skippedSince(); }
+	/** Warnings about the frames that next() has skipped, since the last call; of none that was only read
+	 *  ahead. */
+	std::vector<std::string> takeSkipped();
 
 private:
+	/** What a call of next() comes to. */
+	struct Step
+	{
+		std::optional<SlamFrame> frame;    //!< empty: the end
+		std::vector<std::string> skipped;  //!< on the way to it
+		std::exception_ptr error;          //!< that is the end; null: none
+	};
 	class Queue;
 
+	Step step();
 	std::optional<SlamFrame> produce();
 	mrpt::obs::CObservation::Ptr read();
 	void lookAhead();
@@ -51,7 +60,8 @@ private:
 	Rectifier rectifier_;
 	mrpt::obs::CObservation::Ptr lookAhead_;
 	std::exception_ptr readError_;
-	std::unique_ptr<Queue> queue_;  //!< null without a thread
+	std::vector<std::string> skipped_;  //!< of the consumer's thread
+	std::unique_ptr<Queue> queue_;      //!< null without a thread
 	std::thread thread_;
 };
 

@@ -25,10 +25,13 @@ struct LoopRecord
 	mrpt::Clock::time_point time;
 	std::size_t localMapSince = 0;  //!< camera node from which on the local map is
 	LoopVerdict verdict;
-	std::optional<double>
-		driftSigmas;  //!< of the correction, see DriftPrior; when the detector accepted
+	/** Of the correction, see DriftPrior; when the detector accepted. */
+	std::optional<double> driftSigmas;
 	std::vector<MatchedObjects> matched;             //!< verdict.matches in detail
 	std::optional<OptimizationReport> optimization;  //!< when accepted
 };
+
+/** How many attempts came to this. */
+std::size_t countLoops(const std::vector<LoopRecord>& loops, LoopVerdict::Decision decision);
 
 }  // namespace semloop

@@ -4,7 +4,6 @@
 #include <semloop/observations/CObservationInstances.h>
 #include <semloop/observations/RgbdFrame.h>
 
-#include <string>
 #include <vector>
 
 namespace semloop
@@ -16,8 +15,7 @@ struct SlamFrame
 	CObservationInstances::Ptr instances;              //!< null: this frame was not segmented
 	mrpt::obs::CObservation3DRangeScan::Ptr scan;      //!< as recorded
 	std::vector<mrpt::obs::CObservation::Ptr> before;  //!< other observations since the last frame
-	std::vector<std::string> skipped;  //!< warnings: damaged frames between the last one and this
-	double progress = 0.0;             //!< share of the rawlog read so far
+	double progress = 0.0;                             //!< share of the rawlog read so far
 };
 
 }  // namespace semloop

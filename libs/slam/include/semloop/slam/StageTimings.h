@@ -17,11 +17,9 @@ public:
 		std::size_t count = 0;
 		double milliseconds = 0.0;
 	};
-	/** Milliseconds. */
-	struct Summary
+	struct Summary : Total
 	{
-		std::size_t count = 0;
-		double total = 0.0, mean = 0.0, p50 = 0.0, p95 = 0.0, max = 0.0;
+		double mean = 0.0, p50 = 0.0, p95 = 0.0, max = 0.0;  //!< [ms]
 	};
 
 	/** Adds its own lifetime to a stage. */
@@ -51,9 +49,14 @@ public:
 	void writeCsv(const std::string& path) const;
 
 private:
+	struct Stage
+	{
+		std::vector<float> samples;  //!< [ms]
+		double total = 0.0;          //!< of them, before they were rounded [ms]
+	};
+
 	mutable std::mutex mutex_;
-	std::map<std::string, std::vector<float>> samples_;
-	std::map<std::string, Total> totals_;
+	std::map<std::string, Stage> stages_;
 };
 
 }  // namespace semloop

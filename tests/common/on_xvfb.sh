@@ -1,13 +1,12 @@
 #!/usr/bin/env bash
 # Runs a program on a display of its own, which ends with the program. In FOLDER, Xvfb_screen0 is what is
-# on the screen (X window dump), display is the display's name, server the process to kill. Exit code 77: Xvfb is not installed.
+# on the screen (X window dump), display is the display's name, server the process to kill.
 #
 #   on_xvfb.sh FOLDER PROGRAM [ARGUMENT...]
 set -euo pipefail
 
 folder=$1
 shift
-command -v Xvfb > /dev/null || { echo "Xvfb is not installed"; exit 77; }
 
 # Xvfb chooses a display that is free, and says which. No test takes as long as the time limits.
 mkfifo "$folder/number"
