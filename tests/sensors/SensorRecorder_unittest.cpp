@@ -10,15 +10,20 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include <chrono>
 #include <csignal>
 #include <filesystem>
+#include <future>
 #include <mutex>
 #include <string>
+#include <thread>
+#include <utility>
 #include <vector>
 
 #include "TemporaryFolder.h"
 
 using namespace semloop;
+using namespace std::chrono_literals;
 using mrpt::obs::CObservationOdometry;
 
 namespace
@@ -50,6 +55,47 @@ CObservationOdometry::Ptr reading(int i)
 	odometry->odometry.x(i);
 	return odometry;
 }
+
+/** Is being written until it is let go. */
+struct HeldReading : CObservationOdometry
+{
+	void serializeTo(mrpt::serialization::CArchive& out) const override
+	{
+		started.set_value();
+		letGo.get_future().wait();
+		CObservationOdometry::serializeTo(out);
+	}
+
+	mutable std::promise<void> started, letGo;
+};
+
+/** A full pipe in the place of the partial file: whoever writes to it waits. */
+class HangingDisk
+{
+public:
+	explicit HangingDisk(const std::string& path)
+	{
+		const std::string pipe = RawlogWriter::partialPath(path);
+		EXPECT_EQ(mkfifo(pipe.c_str(), 0600), 0);
+		// Whoever opens a pipe for writing waits for a reader.
+		reader_ = open(pipe.c_str(), O_RDONLY | O_NONBLOCK);
+		const int writer = open(pipe.c_str(), O_WRONLY | O_NONBLOCK);
+		while (::write(writer, "x", 1) == 1)
+			;
+		::close(writer);
+	}
+	~HangingDisk() { fail(); }
+
+	/** Ends the waiting, with an error: a broken pipe. */
+	void fail()
+	{
+		std::signal(SIGPIPE, SIG_IGN);
+		if (reader_ >= 0) ::close(std::exchange(reader_, -1));
+	}
+
+private:
+	int reader_ = -1;
+};
 }  // namespace
 
 TEST(SensorRecorder, KeepsEverythingInOrder)
@@ -127,9 +173,7 @@ TEST(SensorRecorder, ADiskThatHangsIsNotWaitedFor)
 {
 	const TemporaryFolder folder;
 	const std::string path = folder.file("x.rawlog");
-	ASSERT_EQ(mkfifo(RawlogWriter::partialPath(path).c_str(), 0600), 0);
-	// Whoever opens a pipe for writing waits for a reader: one that reads at the end only.
-	const int reader = open(RawlogWriter::partialPath(path).c_str(), O_RDONLY | O_NONBLOCK);
+	HangingDisk disk(path);
 	News news;
 	SensorRecorder recorder(path, news.report());
 	const auto image = mrpt::obs::CObservation3DRangeScan::Create();
@@ -140,7 +184,38 @@ TEST(SensorRecorder, ADiskThatHangsIsNotWaitedFor)
 	for (int i = 0; i < 200; ++i) recorder.write(image);
 	EXPECT_GE(recorder.counts().omitted, 90u);
 	EXPECT_THAT(news.all().at(0), testing::HasSubstr("does not keep up"));
-	std::signal(SIGPIPE, SIG_IGN);
-	close(reader);  // a broken pipe
+	disk.fail();
 	EXPECT_THROW(recorder.close(), InputError);
+}
+
+TEST(SensorRecorder, ADiskThatHangsWhileCompressionIsLeftOffIsNotWaitedFor)
+{
+	const TemporaryFolder folder;
+	const std::string path = folder.file("x.rawlog");
+	HangingDisk disk(path);
+	News news;
+	SensorRecorder recorder(path, news.report());
+	const auto held = std::make_shared<HeldReading>();
+	recorder.write(held);
+	held->started.get_future().wait();
+	// So many frames that compression is left off; zlib then writes the reading that it has kept.
+	for (int i = 0; i < 20; ++i) recorder.write(mrpt::obs::CObservation3DRangeScan::Create());
+	held->letGo.set_value();
+
+	auto sensor = std::async(
+		std::launch::async,
+		[&]
+		{
+			while (recorder.counts().recorded == 0) std::this_thread::sleep_for(1ms);
+			std::this_thread::sleep_for(100ms);  // until the recorder waits for the disk
+			recorder.write(reading(1));
+			return recorder.counts().recorded;
+		});
+	const bool returned = sensor.wait_for(10s) == std::future_status::ready;
+	EXPECT_TRUE(returned);
+	disk.fail();
+	EXPECT_THROW(recorder.close(), InputError);
+	// All would fit into zlib's buffer: the disk is waited for where the level changes.
+	EXPECT_EQ(sensor.get(), 1u);
+	EXPECT_EQ(recorder.counts().omitted, 21u);
 }

@@ -103,6 +103,20 @@ TEST_F(SensorSourceTest, DropsTheOldestFramesWhenTheQueueIsFullAndTapsThemNevert
 	EXPECT_EQ(tapped_.size(), 5u);
 }
 
+TEST_F(SensorSourceTest, DropsTheOldestOthersWhenThereAreAHundredTimesAsMany)
+{
+	options_.queueLength = 1;
+	std::vector<Turn> script(103, Turn::Odometry);
+	script[0] = Turn::Frame;
+	auto& source = grab(script);
+	ASSERT_FALSE(source.isStuck(10s));
+	const auto times = readAll(source);
+	ASSERT_EQ(times.size(), 101u);
+	EXPECT_EQ(times[0], at(0));
+	EXPECT_EQ(times[1], at(3));
+	EXPECT_EQ(source.counts().dropped, 2u);
+}
+
 TEST_F(SensorSourceTest, TellsOfAStallOnceAndGoesOn)
 {
 	options_.stallAfter = 0.2;

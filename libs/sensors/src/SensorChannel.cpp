@@ -1,13 +1,11 @@
 #include "SensorChannel.h"
 
 #include <mrpt/hwdrivers/COpenNI2Generic.h>
-#include <mrpt/obs/CObservation3DRangeScan.h>
 #include <mrpt/obs/CSensoryFrame.h>
 #include <semloop/config/Error.h>
 #include <semloop/config/ExceptionMessage.h>
 #include <semloop/sensors/RecordedSensor.h>
 
-#include <algorithm>
 #include <utility>
 
 #include "UnplugListener.h"
@@ -19,15 +17,8 @@ namespace semloop
 {
 namespace
 {
-// Inertial units and the like come faster than frames, and weigh nothing.
-constexpr std::size_t kOthersPerFrame = 100;
 // Who is told that a camera was unplugged may be before its last frame.
 constexpr std::chrono::milliseconds kPatienceForLastFrame{300};
-
-bool isFrame(const CObservation::Ptr& observation)
-{
-	return std::dynamic_pointer_cast<mrpt::obs::CObservation3DRangeScan>(observation) != nullptr;
-}
 
 std::vector<CObservation::Ptr> observationsOf(CGenericSensor& sensor)
 {
@@ -58,9 +49,9 @@ SensorSource::Channel::Channel(
 	CGenericSensor::Ptr grabbed, std::string itsName, const SensorSourceOptions& options, Tap tap)
 	: name(std::move(itsName)),
 	  sensor_(std::move(grabbed)),
-	  options_(options),
 	  tap_(std::move(tap)),
-	  clock_(options.startTime)
+	  clock_(options.startTime),
+	  queue_(std::size_t(options.queueLength))
 {
 }
 
@@ -152,38 +143,17 @@ void SensorSource::Channel::push(const CObservation::Ptr& observation)
 	if (tap_) tap_(observation);
 	if (wasSetBack) news.push_back(name + ": the clock was set back; times go on from the last");
 	++counts.grabbed;
-	queue_.push_back(observation);
-	if (isFrame(observation))
-	{
+	if (isFrame(*observation))
 		lastFrame = Clock::now();
-		++frames_;
-	}
 	else
 		lastOther = observation->GetRuntimeClass()->className;
-	makeRoom();
+	if (queue_.isFullFor(*observation))
+	{
+		queue_.dropOldestLike(*observation);
+		++counts.dropped;
+	}
+	queue_.push(observation);
 	changed.notify_all();
-}
-
-void SensorSource::Channel::makeRoom()
-{
-	const auto capacity = std::size_t(options_.queueLength);
-	const bool tooManyFrames = frames_ > capacity;
-	if (!tooManyFrames && queue_.size() <= frames_ + kOthersPerFrame * capacity) return;
-	const auto oldest = std::find_if(
-		queue_.begin(), queue_.end(),
-		[&](const CObservation::Ptr& o) { return isFrame(o) == tooManyFrames; });
-	queue_.erase(oldest);
-	if (tooManyFrames) --frames_;
-	++counts.dropped;
-}
-
-CObservation::Ptr SensorSource::Channel::pop()
-{
-	if (queue_.empty()) return nullptr;
-	const auto observation = queue_.front();
-	queue_.pop_front();
-	if (isFrame(observation)) --frames_;
-	return observation;
 }
 
 }  // namespace semloop

@@ -6,13 +6,13 @@
 #include <atomic>
 #include <chrono>
 #include <condition_variable>
-#include <deque>
 #include <exception>
 #include <memory>
 #include <mutex>
 #include <string>
 #include <vector>
 
+#include "ObservationQueue.h"
 #include "SensorClock.h"
 
 namespace semloop
@@ -33,7 +33,7 @@ struct SensorSource::Channel
 	/** To be called with the mutex held, as all below. */
 	bool isOver() const;
 	/** The oldest observation that waits; null when none does. */
-	mrpt::obs::CObservation::Ptr pop();
+	mrpt::obs::CObservation::Ptr pop() { return queue_.pop(); }
 
 	const std::string name;
 	mutable std::mutex mutex;
@@ -50,16 +50,13 @@ struct SensorSource::Channel
 private:
 	void grabAll();
 	void push(const mrpt::obs::CObservation::Ptr& observation);
-	void makeRoom();
 	void waitForNextTurn(Clock::time_point turn, bool idle) const;
 
-	mrpt::hwdrivers::CGenericSensor::Ptr sensor_;  //!< the thread's, as the next three
-	const SensorSourceOptions options_;
+	mrpt::hwdrivers::CGenericSensor::Ptr sensor_;  //!< the thread's, as the next two
 	const Tap tap_;
 	SensorClock clock_;
 
-	std::deque<mrpt::obs::CObservation::Ptr> queue_;
-	std::size_t frames_ = 0;  //!< in the queue
+	ObservationQueue queue_;
 	bool ended_ = false;
 	Clock::time_point endedAt_;
 };

@@ -1,11 +1,9 @@
-#include <mrpt/obs/CObservation3DRangeScan.h>
 #include <semloop/config/Error.h>
 #include <semloop/config/ExceptionMessage.h>
 #include <semloop/observations/RawlogWriter.h>
 #include <semloop/sensors/SensorRecorder.h>
 
 #include <condition_variable>
-#include <deque>
 #include <exception>
 #include <filesystem>
 #include <mutex>
@@ -13,17 +11,20 @@
 #include <thread>
 #include <utility>
 
+#include "ObservationQueue.h"
+
 namespace semloop
 {
 namespace
 {
-constexpr std::size_t kFrames = 100, kOthers = 10000;  // that may wait
+constexpr std::size_t kFrames = 100;     // that may wait
 constexpr std::size_t kCompressed = 10;  // so many waiting frames leave time for compression
 
-bool isFrame(const mrpt::obs::CObservation& observation)
+struct Task
 {
-	return dynamic_cast<const mrpt::obs::CObservation3DRangeScan*>(&observation) != nullptr;
-}
+	mrpt::obs::CObservation::Ptr observation;
+	bool compress = true;
+};
 }  // namespace
 
 struct SensorRecorder::State
@@ -38,33 +39,31 @@ struct SensorRecorder::State
 	std::optional<RawlogWriter> writer;  //!< the thread's, while that runs
 	mutable std::mutex mutex;
 	std::condition_variable changed;
-	std::deque<mrpt::obs::CObservation::Ptr> queue;
-	std::size_t frames = 0;  //!< in the queue
+	ObservationQueue queue{kFrames};
 	Counts counts;
 	bool closing = false;
 	std::exception_ptr error;
 	std::thread thread;
 
-	/** The next one; null when all is written. */
-	mrpt::obs::CObservation::Ptr take()
+	/** The next one; none when all is written. */
+	std::optional<Task> take()
 	{
 		std::unique_lock lock(mutex);
-		changed.wait(lock, [&] { return !queue.empty() || closing; });
-		if (queue.empty()) return nullptr;
-		writer->setCompression(frames <= kCompressed);
-		const auto observation = queue.front();
-		queue.pop_front();
-		if (isFrame(*observation)) --frames;
-		return observation;
+		changed.wait(lock, [&] { return !queue.isEmpty() || closing; });
+		if (queue.isEmpty()) return std::nullopt;
+		const bool compress = queue.frames() <= kCompressed;
+		return Task{queue.pop(), compress};
 	}
 
 	void run()
 	{
 		try
 		{
-			while (const auto observation = take())
+			while (const auto task = take())
 			{
-				writer->write(*observation);
+				// May wait for the disk as writing does, so neither is done with the lock.
+				writer->setCompression(task->compress);
+				writer->write(*task->observation);
 				const std::lock_guard lock(mutex);
 				++counts.recorded;
 			}
@@ -83,8 +82,8 @@ struct SensorRecorder::State
 		report("the recording ends here: " + text);
 		const std::lock_guard lock(mutex);
 		error = std::make_exception_ptr(InputError(text));
-		counts.omitted += 1 + queue.size();
-		queue.clear();
+		++counts.omitted;
+		while (queue.pop()) ++counts.omitted;
 		closing = true;
 	}
 };
@@ -119,11 +118,9 @@ void SensorRecorder::write(const mrpt::obs::CObservation::Ptr& observation)
 	bool isFirstOmitted = false;
 	{
 		const std::lock_guard lock(state_->mutex);
-		const bool hasRoom = state_->frames < kFrames && state_->queue.size() < kOthers;
-		if (hasRoom && !state_->closing)
+		if (!state_->queue.isFullFor(*observation) && !state_->closing)
 		{
-			state_->queue.push_back(observation);
-			if (isFrame(*observation)) ++state_->frames;
+			state_->queue.push(observation);
 			state_->changed.notify_all();
 			return;
 		}

@@ -11,7 +11,7 @@ namespace semloop
 {
 /** Writes what a sensor gives to a rawlog, in a thread of its own. The sensor does not wait for it: when
  *  the disk does not keep up, compression is left off first, and then what finds no room in the queue
- *  (a hundred frames) is not recorded, and counted. */
+ *  (a hundred frames, ten thousand others) is not recorded, and counted. */
 class SensorRecorder
 {
 public:

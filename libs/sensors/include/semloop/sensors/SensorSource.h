@@ -15,7 +15,7 @@ namespace semloop
 {
 struct SensorSourceOptions : Options
 {
-	int queueLength = 30;     //!< observations waiting
+	int queueLength = 30;     //!< frames waiting; a hundred times as many others
 	double stallAfter = 1.0;  //!< [s]
 	double lostAfter = 10.0;  //!< [s]
 	double startTime = 0.0;   //!< Unix time of the first observation [s]; 0: as the sensor says
@@ -26,11 +26,11 @@ protected:
 	void describe(OptionFields& fields) override;
 };
 
-/** What became of a sensor's observations so far. Frames are RGB-D scans. */
+/** What became of a sensor's observations so far, of RGB-D scans (frames) and of all others. */
 struct SensorCounts
 {
 	std::size_t grabbed = 0;
-	std::size_t dropped = 0;    //!< the queue was full
+	std::size_t dropped = 0;    //!< the queue was full: the next step had no time for them
 	std::size_t stalls = 0;     //!< more than stall_after without a frame
 	double longestStall = 0.0;  //!< [s]
 };
@@ -39,8 +39,9 @@ struct SensorCounts
  *  own. A section of the configuration describes the sensor as rawlog-grabber wants it: `driver` is its
  *  class.
  *
- *  A sensor does not wait: when the queue is full, the oldest observation is dropped and counted. Its
- *  silence is reported after stall_after and when it ends; after lost_after the sensor is given up. */
+ *  A sensor does not wait: when the queue is full, the oldest frame is dropped and counted, or the oldest
+ *  of all others when there are a hundred times as many. Its silence is reported after stall_after and
+ *  when it ends; after lost_after the sensor is given up. */
 class SensorSource : public ObservationSource
 {
 public:
