@@ -108,13 +108,13 @@ public:
 				bytes_ = std::move(next->bytes);
 				if (before && *time_ <= *before)
 					throw InputError(
-						reader_.path() + ": the instances at " + formatUnixTime(*time_) +
+						reader_.name() + ": the instances at " + formatUnixTime(*time_) +
 						" s are not later than those before them");
 				return;
 			}
 			if (!isSidecarHeader(*next->object))
 				throw InputError(
-					reader_.path() + ": holds a " + next->object->GetRuntimeClass()->className +
+					reader_.name() + ": holds a " + next->object->GetRuntimeClass()->className +
 					": not a sidecar with instances alone");
 			headers_.push_back(std::move(next->bytes));
 		}

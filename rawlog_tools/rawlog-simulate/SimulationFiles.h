@@ -3,9 +3,7 @@
 #include <semloop/observations/RawlogWriter.h>
 
 #include <map>
-#include <opencv2/core/mat.hpp>
 #include <string>
-#include <vector>
 
 #include "Simulator.h"
 
@@ -16,7 +14,7 @@ class SimulationFiles
 {
 public:
 	/** Throws InputError when they cannot be made. */
-	SimulationFiles(const std::string& rawlog, bool embed, bool color);
+	SimulationFiles(const std::string& rawlog, bool embed);
 
 	/** Takes the frame's images. */
 	void write(SimulatedFrame& frame);
@@ -25,13 +23,8 @@ public:
 	void close(const Simulator& simulator, const FurnitureCatalog& catalog);
 
 private:
-	void storeColor(mrpt::obs::CObservation3DRangeScan& scan);
-	void removeImagesOfALongerRun() const;
-
 	std::string prefix_;
 	std::string imagesFolder_;  //!< empty: images in the rawlog
-	bool color_;
-	std::vector<uchar> jpeg_;  //!< the last one written
 	RawlogWriter rawlog_, trueInstances_, instances_;
 	std::size_t frames_ = 0;
 	std::map<uint32_t, int> observations_;  //!< frames that show each object

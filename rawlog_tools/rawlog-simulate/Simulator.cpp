@@ -2,9 +2,9 @@
 
 #include <semloop/config/Error.h>
 #include <semloop/observations/CameraFrames.h>
+#include <semloop/observations/RgbdFrame.h>
 #include <semloop/simulation/CameraPath.h>
 
-#include <algorithm>
 #include <chrono>
 
 namespace semloop
@@ -90,26 +90,18 @@ Trajectory Simulator::odometry() const
 	return corruptTrajectory(trajectory_, sensors_.odometry, keyOf(seed_, kOdometryStream, 0));
 }
 
-mrpt::obs::CObservation3DRangeScan Simulator::scanOf(const RenderedView& view, std::size_t i) const
+mrpt::obs::CObservation3DRangeScan::Ptr Simulator::scanOf(
+	const RenderedView& view, std::size_t i) const
 {
-	mrpt::obs::CObservation3DRangeScan scan;
-	scan.timestamp = trajectory_[i].time;
-	scan.sensorLabel = "RGBD";
-	scan.cameraParams = scan.cameraParamsIntensity = camera_;
-	scan.range_is_depth = true;
-	scan.rangeUnits = kDepthUnit;
-	scan.maxRange = float(sensors_.depth.maximumRange);
-	scan.hasRangeImage = true;
+	const auto timestamp = trajectory_[i].time;
+	const double time = mrpt::system::timeDifference(startTime(), timestamp);
 	const cv::Mat depth = senseDepth(view, sensors_.depth, keyOf(seed_, kDepthStream, i));
-	scan.rangeImage.resize(depth.rows, depth.cols);
-	for (int row = 0; row < depth.rows; ++row)
-		std::copy_n(depth.ptr<uint16_t>(row), depth.cols, &scan.rangeImage(row, 0));
-	scan.hasIntensityImage = true;
-	const double time = mrpt::system::timeDifference(startTime(), scan.timestamp);
 	const cv::Mat color =
 		view.color.empty() ? cv::Mat(depth.size(), CV_8UC3, cv::Scalar::all(0))
 						   : senseColor(view, sensors_.color, time, keyOf(seed_, kColorStream, i));
-	scan.intensityImage = mrpt::img::CImage(color, mrpt::img::DEEP_COPY);
+	auto scan = rangeScanFrom(color, depth, kDepthUnit, camera_);
+	scan->timestamp = timestamp;
+	scan->maxRange = float(sensors_.depth.maximumRange);
 	return scan;
 }
 
@@ -127,7 +119,7 @@ SimulatedFrame Simulator::frame(std::size_t i, bool color) const
 	{
 		instances->timestamp = trajectory_[i].time;
 		instances->sensorLabel = "INSTANCES";
-		instances->sensorPose = result.scan.sensorPose;
+		instances->sensorPose = result.scan->sensorPose;
 	}
 	return result;
 }

@@ -20,7 +20,7 @@ namespace semloop
 struct SimulatedFrame
 {
 	mrpt::obs::CObservationIMU acceleration;
-	mrpt::obs::CObservation3DRangeScan scan;
+	mrpt::obs::CObservation3DRangeScan::Ptr scan;
 	CObservationInstances trueInstances, instances;
 };
 
@@ -53,7 +53,7 @@ private:
 		SimulatedDetectorOptions detector;
 		OdometryNoiseOptions odometry;
 	};
-	mrpt::obs::CObservation3DRangeScan scanOf(const RenderedView& view, std::size_t i) const;
+	mrpt::obs::CObservation3DRangeScan::Ptr scanOf(const RenderedView& view, std::size_t i) const;
 
 	uint64_t seed_;
 	SceneDescription description_;

@@ -147,7 +147,7 @@ int run(int argc, char** argv)
 	const auto catalog = FurnitureCatalog::open(arguments.furniture);
 	const Simulator simulator(config, catalog, arguments.seed);
 	catchStopSignal();
-	SimulationFiles files(arguments.rawlog, arguments.embed, arguments.color);
+	SimulationFiles files(arguments.rawlog, arguments.embed);
 	const std::size_t frames = writeFrames(simulator, arguments, files);
 	files.close(simulator, catalog);
 	std::printf(

@@ -22,6 +22,7 @@ namespace semloop
 namespace
 {
 namespace fs = std::filesystem;
+using mrpt::obs::CObservation3DRangeScan;
 
 constexpr std::size_t kPosesBeyondTheEnd = 5;  // players differ in what they pair at the end
 // PlaybackSync.cpp of hkust-vgd/scenenn: poses and mesh are of its frames, pixels as stored.
@@ -67,19 +68,18 @@ public:
 			  import.trajectory.empty() ? SceneNnTrajectory{}
 										: readSceneNnTrajectory(import.trajectory)),
 		  truth_(readTruth(import)),
-		  recording_(import.oni, kAsSceneNnsPlayer),
-		  rawlog_(import.rawlog),
-		  imagesFolder_(import.embed ? "" : makeExternalImagesFolder(import.rawlog))
+		  scans_(OniRecording(import.oni, kAsSceneNnsPlayer), import.camera, import.start),
+		  rawlog_(import.rawlog)
 	{
 		if (truth_) instances_.emplace(prefix_ + "_truth_instances.rawlog");
 	}
 
 	void readAll(const std::function<void(std::size_t, double)>& progress)
 	{
-		while (const auto frame = recording_.next())
+		while (const auto scan = scans_.next())
 		{
-			add(*frame);
-			progress(frames_, recording_.progress());
+			add(*scan);
+			progress(frames_, scans_.recording().progress());
 		}
 		requireOneSequence();
 	}
@@ -101,8 +101,8 @@ public:
 	{
 		SceneNnReport report;
 		report.frames = frames_;
-		report.unpairedColor = recording_.unpairedColor();
-		report.unpairedDepth = recording_.unpairedDepth();
+		report.unpairedColor = scans_.recording().unpairedColor();
+		report.unpairedDepth = scans_.recording().unpairedDepth();
 		report.poses = groundTruth_.size();
 		if (!truth_) return report;
 		const auto& seen = truth_->observations();
@@ -114,46 +114,27 @@ public:
 	}
 
 private:
-	void add(const OniFrame& frame)
+	void add(CObservation3DRangeScan& scan)
 	{
-		requireSize(frame.depth);
-		const auto scan = rangeScanFrom(frame, recording_.depthUnit(), import_.camera);
-		if (frames_ == 0) firstTime_ = frame.time;
-		scan->timestamp = import_.start + std::chrono::duration_cast<mrpt::Clock::duration>(
-											  frame.time - firstTime_);
-		scan->sensorLabel = "RGBD";
 		if (const auto pose = trajectory_.at(frames_))
 		{
-			groundTruth_.push_back({scan->timestamp, *pose});
-			if (truth_) instances_->write(truth_->of(*scan, *pose));
+			groundTruth_.push_back({scan.timestamp, *pose});
+			if (truth_) instances_->write(truth_->of(scan, *pose));
 		}
-		if (!import_.embed)
-		{
-			storeColorExternally(*scan, imagesFolder_, externalImageName("color", frames_, ".png"));
-			storeDepthExternally(*scan, imagesFolder_, externalImageName("depth", frames_, ".bin"));
-		}
-		rawlog_.write(*scan);
+		if (!import_.embed) moveImagesOut(scan);
+		rawlog_.write(scan);
 		frames_++;
 	}
 
-	void requireSize(const cv::Mat& image) const
+	void moveImagesOut(CObservation3DRangeScan& scan)
 	{
-		const auto& camera = import_.camera;
-		if (image.cols != int(camera.ncols) || image.rows != int(camera.nrows))
-			throw InputError(
-				import_.oni +
-				mrpt::format(
-					": images of %dx%d pixels where the camera has %ux%u: give the right one with "
-					"--camera",
-					image.cols, image.rows, camera.ncols, camera.nrows));
+		if (frames_ == 0) imagesFolder_ = beginExternalImages(import_.rawlog);
+		storeExternally(scan, imagesFolder_, frames_, ".png");
 	}
 
 	void requireOneSequence() const
 	{
 		const std::size_t poses = trajectory_.poses.size();
-		if (frames_ == 0)
-			throw InputError(
-				import_.oni + ": has no colour and depth of one time; record it again");
 		if (poses > frames_ + kPosesBeyondTheEnd)
 			throw InputError(
 				import_.trajectory + ": its last pose is for frame " + std::to_string(poses - 1) +
@@ -179,12 +160,11 @@ private:
 	const std::string prefix_;
 	const SceneNnTrajectory trajectory_;
 	const std::unique_ptr<InstanceTruth> truth_;
-	OniRecording recording_;
+	OniScans scans_;
 	RawlogWriter rawlog_;
-	const std::string imagesFolder_;
+	std::string imagesFolder_;
 	std::optional<RawlogWriter> instances_;
 	std::size_t frames_ = 0;
-	std::chrono::microseconds firstTime_{0};
 	Trajectory groundTruth_;
 };
 

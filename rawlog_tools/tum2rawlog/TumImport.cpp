@@ -5,9 +5,9 @@
 #include <semloop/config/Error.h>
 #include <semloop/observations/ExternalImages.h>
 #include <semloop/observations/RawlogWriter.h>
+#include <semloop/observations/RgbdFrame.h>
 #include <semloop/observations/Trajectory.h>
 
-#include <algorithm>
 #include <filesystem>
 #include <fstream>
 #include <opencv2/imgcodecs.hpp>
@@ -23,7 +23,6 @@ using mrpt::obs::CObservation3DRangeScan;
 using mrpt::obs::CObservationIMU;
 
 constexpr float kMetresPerUnit = 1.0f / 5000;  // of all depth images of the benchmark
-constexpr float kKinectRange = 10.0f;          // [m]
 
 std::string text(cv::Size size)
 {
@@ -40,7 +39,7 @@ cv::Mat readImage(const std::string& path, int flags, cv::Size size)
 	return image;
 }
 
-mrpt::math::CMatrix_u16 readDepth(const std::string& path, cv::Size size)
+cv::Mat readDepth(const std::string& path, cv::Size size)
 {
 	const cv::Mat image = readImage(path, cv::IMREAD_UNCHANGED, size);
 	if (image.depth() == CV_8U)
@@ -48,10 +47,7 @@ mrpt::math::CMatrix_u16 readDepth(const std::string& path, cv::Size size)
 			path + ": depth image of 8 bits: the benchmark's are PNG of 16 bits, 5000 = 1 m");
 	if (image.type() != CV_16UC1)
 		throw InputError(path + ": depth image must have one channel of 16 bits");
-	mrpt::math::CMatrix_u16 depth(image.rows, image.cols);
-	for (int row = 0; row < image.rows; row++)
-		std::copy_n(image.ptr<uint16_t>(row), image.cols, &depth(row, 0));
-	return depth;
+	return image;
 }
 
 void copyBytes(const std::string& from, const std::string& to)
@@ -70,35 +66,26 @@ class FrameMaker
 {
 public:
 	FrameMaker(const TumImport& import)
-		: import_(import),
-		  size_(int(import.camera.ncols), int(import.camera.nrows)),
-		  folder_(import.embed ? "" : makeExternalImagesFolder(import.rawlog))
+		: import_(import), size_(int(import.camera.ncols), int(import.camera.nrows))
 	{
 	}
 
-	CObservation3DRangeScan make(const TumImage& color, const TumImage& depth, std::size_t number)
+	CObservation3DRangeScan::Ptr make(
+		const TumImage& color, const TumImage& depth, std::size_t number)
 	{
-		CObservation3DRangeScan scan;
-		scan.timestamp = color.time;
-		scan.sensorLabel = "RGBD";
-		scan.cameraParams = scan.cameraParamsIntensity = import_.camera;
-		scan.range_is_depth = true;
-		scan.rangeUnits = kMetresPerUnit;
-		scan.maxRange = kKinectRange;
-		scan.hasRangeImage = true;
-		scan.rangeImage = readDepth(depth.path, size_);
-		scan.hasIntensityImage = true;
-		const cv::Mat image = readImage(color.path, cv::IMREAD_COLOR, size_);
-		if (import_.embed)
-			scan.intensityImage = mrpt::img::CImage(image, mrpt::img::SHALLOW_COPY);
-		else
-			moveOut(scan, color.path, number);
+		const cv::Mat depthImage = readDepth(depth.path, size_);
+		const auto scan = rangeScanFrom(
+			readImage(color.path, cv::IMREAD_COLOR, size_), depthImage, kMetresPerUnit,
+			import_.camera);
+		scan->timestamp = color.time;
+		if (!import_.embed) moveOut(*scan, color.path, number);
 		return scan;
 	}
 
 private:
 	void moveOut(CObservation3DRangeScan& scan, const std::string& colorPath, std::size_t number)
 	{
+		if (number == 0) folder_ = beginExternalImages(import_.rawlog);
 		const std::string name =
 			externalImageName("color", number, fs::path(colorPath).extension().string());
 		copyBytes(colorPath, (fs::path(folder_) / name).string());
@@ -160,7 +147,7 @@ TumImportReport importTum(
 	{
 		const TumImage& color = directory.color[pairs[i].color];
 		writeAccelerationsBefore(color.time);
-		writer.write(frames.make(color, directory.depth[pairs[i].depth], i));
+		writer.write(*frames.make(color, directory.depth[pairs[i].depth], i));
 		progress(i + 1, double(i + 1) / double(pairs.size()));
 	}
 	writeAccelerationsBefore(mrpt::Clock::time_point::max());

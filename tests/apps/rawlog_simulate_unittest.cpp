@@ -240,6 +240,26 @@ TEST_F(RawlogSimulate, AShorterRunReplacesALongerOneAndNothingElse)
 	EXPECT_EQ(filesOf("x_objects/").size(), 4u);
 }
 
+TEST_F(RawlogSimulate, AKilledRunLeavesNoEarlierRawlogWithItsImages)
+{
+	ASSERT_EQ(run("--frames 3"), 0) << err_;
+	const auto sizeOfPartial = [&]
+	{
+		std::error_code none;
+		const auto size = std::filesystem::file_size(folder_.file("x.rawlog.partial"), none);
+		return none ? 0 : size;
+	};
+	ChildProcess program(
+		{kProgram, scene_, folder_.file("x.rawlog"), "--set", "camera.rate=240", "--set",
+		 "path.speed=0.05"},
+		folder_.file("out"), folder_.file("err"));
+	waitUntil(
+		"a few frames are written", [&] { return sizeOfPartial() > 0 || !program.isRunning(); });
+	program.send(SIGKILL);
+	EXPECT_EQ(program.killedBy(), SIGKILL);
+	EXPECT_FALSE(std::filesystem::exists(folder_.file("x.rawlog")));
+}
+
 TEST_F(RawlogSimulate, CtrlCFinishesTheFilesOfWhatIsDone)
 {
 	const std::string images = folder_.file("x_Images");

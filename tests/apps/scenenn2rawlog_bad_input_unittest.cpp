@@ -69,6 +69,15 @@ TEST_F(SceneNn2RawlogBadInput, SceneNnsCameraNeedsItsImageSize)
 		{"076.oni", "160x120", "640x480", "--camera"});
 }
 
+TEST_F(SceneNn2RawlogBadInput, AWrongCameraDoesNotCostAnEarlierRawlog)
+{
+	folder_.write("room.rawlog", "earlier");
+	folder_.write("room_Images/color_000000.png", "earlier");
+	EXPECT_EQ(runWith(given("076.oni") + " room.rawlog").code, 1);
+	EXPECT_EQ(readBytes(written("room.rawlog")), "earlier");
+	EXPECT_EQ(readBytes(written("room_Images/color_000000.png")), "earlier");
+}
+
 TEST_F(SceneNn2RawlogBadInput, MissingFilesAreNamed)
 {
 	const std::string nowhere = folder_.file("nowhere");

@@ -50,6 +50,17 @@ TEST_F(Tum2RawlogBadInput, AnImageOfAnotherSizeIsNamed)
 	expectFailure({"rgb/b.png", "320x240", "640x480"});
 }
 
+TEST_F(Tum2RawlogBadInput, AWrongFirstImageDoesNotCostAnEarlierRawlog)
+{
+	ASSERT_EQ(run(), 0) << err_;
+	const auto earlier = readBytes(rawlog_);
+	cv::imwrite((sequence_ / "rgb/a.jpg").string(), cv::Mat(240, 320, CV_8UC3, cv::Scalar(9)));
+	EXPECT_EQ(run(), 1);
+	EXPECT_EQ(readBytes(rawlog_), earlier);
+	EXPECT_EQ(readScans().size(), 2u);
+	EXPECT_TRUE(fs::exists(folder_.path() / "x_Images/depth_000001.bin"));
+}
+
 TEST_F(Tum2RawlogBadInput, AMissingOrDamagedImageIsNamed)
 {
 	const auto path = (sequence_ / "rgb/a.jpg").string();

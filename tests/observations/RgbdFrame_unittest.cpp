@@ -217,6 +217,24 @@ TEST(RgbdFrame, RefusesAFrameThatIsNotOneRegisteredImage)
 	}
 }
 
+TEST(RgbdFrame, ImagesBecomeAScanAndComeBack)
+{
+	const cv::Size size(64, 48);
+	cv::Mat wide(size.height, 2 * size.width, CV_16UC1);
+	cv::randu(wide, 0, 65536);
+	const cv::Mat depth = wide.colRange(0, size.width);  // its rows are apart
+	const auto scan = semloop::rangeScanFrom(
+		semloop::colorPattern(size), depth, 1.0f / 5000, semloop::smallCamera());
+	EXPECT_EQ(scan->sensorLabel, "RGBD");
+	const auto frame = rgbdFrameFrom(*scan);
+	EXPECT_TRUE(same(frame.color, semloop::colorPattern(size)));
+	cv::Mat units;
+	frame.depth.convertTo(units, CV_16U, 5000);
+	EXPECT_TRUE(same(units, depth));
+	EXPECT_TRUE(frame.camera == semloop::smallCamera());
+	EXPECT_TRUE(scan->doDepthAndIntensityCamerasCoincide());
+}
+
 TEST(RgbdFrame, AFrameWithoutDepthIsTheCallersDecision)
 {
 	const auto scan = makeScan();

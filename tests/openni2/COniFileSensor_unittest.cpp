@@ -1,6 +1,7 @@
 #include <mrpt/config/CConfigFileMemory.h>
 #include <mrpt/obs/CObservationComment.h>
 #include <semloop/sensors/COniFileSensor.h>
+#include <semloop/sensors/SensorSource.h>
 
 #include "CameraFixture.h"
 
@@ -54,7 +55,7 @@ TEST_F(OniFileSensor, TakesItsTimeAsItWasRecordedOrAsToldTo)
 	using Clock = std::chrono::steady_clock;
 	const std::string file = "\nfile = " + record();
 	// The last frame comes 290 ms behind the first.
-	for (const auto& [speed, least] : {std::pair("1", 290), std::pair("2", 145)})
+	for (const auto& [speed, least] : {std::pair("1", 290), std::pair("0.5", 580)})
 	{
 		const auto played = sensor("speed = " + std::string(speed) + "   ; a comment" + file);
 		const auto& recorded = dynamic_cast<const RecordedSensor&>(*played);
@@ -130,7 +131,39 @@ TEST_F(OniFileSensor, TakesIntrinsicsFromAFile)
 	played.reset();
 	EXPECT_THAT(
 		messageOf<InputError>([&] { sensor(settings); }),
-		HasSubstr("xtion.ini: is for images of 640x480 pixels"));
+		HasSubstr("images of 64x48 pixels where the camera has 640x480"));
+}
+
+TEST_F(OniFileSensor, WrongKeysAreWrongUsageBeforeTheSensorStarts)
+{
+	const auto usageErrorOf = [](const std::string& settings)
+	{
+		const mrpt::config::CConfigFileMemory config(
+			"[camera]\ndriver = COniFileSensor\nsensorLabel = RGBD\nprocess_rate = 100\n"
+			"max_queue_len = 9\ngrab_decimation = 1\n" +
+			settings);
+		return messageOf<UsageError>(
+			[&] { SensorSource(config, "camera", SensorSourceOptions(), nullptr, nullptr); });
+	};
+	const std::string twoSections = folder_.write("two.ini", "[A]\na = 1\n[B]\nb = 1\n");
+	for (const auto& [settings, saying] : std::vector<std::pair<std::string, std::string>>{
+			 {"sped = 0", "[camera]: COniFileSensor: sped: unknown key"},
+			 {"speed = fast",
+			  "[camera]: COniFileSensor: speed = fast: not allowed; use number in [0, 1000]"},
+			 {"pose_yaw = 1e9", "pose_yaw = 1e9: not allowed"},
+			 {"start_time = noon", "start_time = noon: must be a Unix time"},
+			 {"camera_file = none.ini",
+			  "COniFileSensor: camera_file: none.ini: no such file: give a camera"},
+			 {"camera_file = " + twoSections, "two.ini: needs a section [CAMERA_PARAMS]"}})
+		EXPECT_THAT(usageErrorOf("file = x.oni\n" + settings + "\n"), HasSubstr(saying));
+	EXPECT_THAT(usageErrorOf("speed = 1\n"), HasSubstr("COniFileSensor: file: missing"));
+}
+
+TEST(OniFileSensorManual, ItsTableIsTheOptions)
+{
+	EXPECT_THAT(
+		readBytes(SEMLOOP_SOURCE_DIR "/doc/live.md"),
+		HasSubstr("\n\n" + COniFileSensorOptions().markdownTable()));
 }
 
 }  // namespace

@@ -74,16 +74,41 @@ TEST_F(OniRecordings, TellUnitCameraAndProgress)
 
 TEST_F(OniRecordings, MakeScansThatAreRegisteredFrames)
 {
-	OniRecording recording(record());
-	const auto first = recording.next();
-	ASSERT_TRUE(first);
-	const auto scan = rangeScanFrom(*first, recording.depthUnit(), recording.camera());
-	const RgbdFrame frame = rgbdFrameFrom(*scan);
-	EXPECT_TRUE(isSame(frame.color, colorOfFrame(0)));
-	cv::Mat millimetres;
-	frame.depth.convertTo(millimetres, CV_16U, 1000);
-	EXPECT_TRUE(isSame(millimetres, depthOfFrame(0)));
-	EXPECT_TRUE(scan->doDepthAndIntensityCamerasCoincide());
+	const auto start = mrpt::Clock::fromDouble(1305031453.25);
+	OniScans scans(OniRecording(record()), std::nullopt, start);
+	for (int i = 0; i < kFrames; i++)
+	{
+		const auto scan = scans.next();
+		ASSERT_TRUE(scan);
+		const RgbdFrame frame = rgbdFrameFrom(*scan);
+		cv::Mat millimetres;
+		frame.depth.convertTo(millimetres, CV_16U, 1000);
+		EXPECT_EQ(frameOf(frame.color, millimetres), i);
+		EXPECT_EQ(frame.time, start + i * std::chrono::milliseconds(10));
+		EXPECT_NEAR(frame.camera.fx(), 52.5, 1e-4);
+	}
+	EXPECT_FALSE(scans.next());
+}
+
+TEST_F(OniRecordings, MakeNoScansForACameraOfAnotherSize)
+{
+	auto camera = theCamera();
+	camera.ncols = 640;
+	const std::string path = record();
+	EXPECT_THAT(
+		messageOf<InputError>([&] { OniScans(OniRecording(path), camera, {}); }),
+		AllOf(
+			HasSubstr("recorded.oni: images of 64x48 pixels where the camera has 640x48"),
+			HasSubstr("camera_file")));
+}
+
+TEST_F(OniRecordings, WithoutAnyPairAreRefused)
+{
+	OniScans scans(
+		OniRecording(record("record", {{"RATE", "100"}, {"DROP_COLOR", "1"}})), std::nullopt, {});
+	EXPECT_THAT(
+		messageOf<InputError>([&] { scans.next(); }),
+		HasSubstr("recorded.oni: no colour and depth image in it were taken together"));
 }
 
 TEST_F(OniRecordings, CanBePlayedTwiceAtOnceInOneProcess)

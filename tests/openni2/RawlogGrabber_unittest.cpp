@@ -28,8 +28,9 @@ protected:
 	{
 		folder_.write(
 			"grab.ini",
-			"[global]\nrawlog_prefix = ./grabbed\ntime_between_launches = 0\n"
-			"use_sensoryframes = 0\nGRABBER_PERIOD_MS = " +
+			// OpenNI2 is in the folder of its drivers for a moment, with the whole process.
+			"[global]\nrawlog_prefix = " + folder_.file("grabbed") +
+				"\ntime_between_launches = 0\nuse_sensoryframes = 0\nGRABBER_PERIOD_MS = " +
 				std::to_string(grabberPeriod) +
 				"\n[camera]\nsensorLabel = RGBD\nprocess_rate = 200\n" + camera);
 	}
@@ -138,10 +139,10 @@ TEST_F(RawlogGrabber, SaysInOneLineWhyItCannotPlay)
 {
 	for (const auto& [camera, message] : std::vector<std::pair<std::string, std::string>>{
 			 {"file = none.oni\n", "none.oni: no such file"},
-			 {"speed = 1\n", "camera: file = : must be a recording"},
-			 {"file = x.oni\nspeed = fast\n", "camera: speed = fast: must be a number"},
-			 {"file = x.oni\nspeed = -1\n", "camera: speed = -1: must be between 0"},
-			 {"file = x.oni\nstart_time = noon\n", "camera: start_time = noon: must be a Unix"}})
+			 {"speed = 1\n", "file: missing; name a recording"},
+			 {"file = x.oni\nspeed = fast\n", "speed = fast: not allowed; use number in [0, 1000]"},
+			 {"file = x.oni\nspeed = -1\n", "speed = -1: not allowed"},
+			 {"file = x.oni\nstart_time = noon\n", "start_time = noon: must be a Unix"}})
 	{
 		writeIni("driver = COniFileSensor\n" + camera);
 		EXPECT_THAT(playRecording(), HasSubstr(message));

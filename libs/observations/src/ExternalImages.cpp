@@ -10,6 +10,8 @@
 #include <fstream>
 #include <iterator>
 #include <opencv2/imgcodecs.hpp>
+#include <regex>
+#include <vector>
 
 #include "GzFile.h"
 
@@ -80,6 +82,39 @@ uint32_t littleEndian(const uint8_t* bytes, int count)
 	return value;
 }
 
+void removeFile(const fs::path& path)
+{
+	std::error_code error;
+	fs::remove(path, error);
+	if (error)
+		throw InputError(
+			path.string() + ": cannot be removed (" + error.message() +
+			"): remove it, or name another output");
+}
+
+/** A longer run would leave its last ones, another program those of another format. */
+void removeNumberedImages(const std::string& folder)
+{
+	static const std::regex name(R"((color|depth)_\d{6,}\.\w+)");
+	std::vector<fs::path> images;
+	for (const auto& entry : fs::directory_iterator(folder))
+		if (std::regex_match(entry.path().filename().string(), name))
+			images.push_back(entry.path());
+	for (const auto& image : images) removeFile(image);
+}
+
+void storeColorExternally(
+	CObservation3DRangeScan& scan, const std::string& folder, const std::string& fileName)
+{
+	const fs::path path = fs::path(folder) / fileName;
+	std::vector<uint8_t> bytes;
+	cv::imencode(path.extension().string(), scan.intensityImage.asCvMatRef(), bytes);
+	std::ofstream out(path, std::ios::binary);
+	out.write(reinterpret_cast<const char*>(bytes.data()), std::streamsize(bytes.size()));
+	if (!out.flush()) throw InputError(path.string() + ": cannot be written; is the disk full?");
+	scan.intensityImage.setExternalStorage(fileName);
+}
+
 }  // namespace
 
 cv::Mat readImageFile(const std::string& path, int imreadFlags)
@@ -105,13 +140,18 @@ std::string externalImagesFolder(const std::string& rawlogPath)
 	return path.replace_extension().string() + "_Images";
 }
 
-std::string makeExternalImagesFolder(const std::string& rawlogPath)
+std::string beginExternalImages(const std::string& rawlogPath)
 {
 	const std::string folder = externalImagesFolder(rawlogPath);
 	std::error_code error;
-	fs::remove(rawlogPath, error);
+	if (fs::is_symlink(folder, error))
+		throw InputError(
+			folder +
+			": is a link to another rawlog's images: remove the link, or name another output");
 	fs::create_directories(folder, error);
 	if (error) throw InputError(folder + ": cannot be made (" + error.message() + ")");
+	removeFile(rawlogPath);
+	removeNumberedImages(folder);
 	return folder;
 }
 
@@ -135,18 +175,6 @@ void resolveExternalImages(mrpt::obs::CObservation& observation, const std::stri
 	}
 }
 
-void storeColorExternally(
-	CObservation3DRangeScan& scan, const std::string& folder, const std::string& fileName)
-{
-	const fs::path path = fs::path(folder) / fileName;
-	std::vector<uint8_t> bytes;
-	cv::imencode(path.extension().string(), scan.intensityImage.asCvMatRef(), bytes);
-	std::ofstream out(path, std::ios::binary);
-	out.write(reinterpret_cast<const char*>(bytes.data()), std::streamsize(bytes.size()));
-	if (!out.flush()) throw InputError(path.string() + ": cannot be written; is the disk full?");
-	scan.intensityImage.setExternalStorage(fileName);
-}
-
 void storeDepthExternally(
 	CObservation3DRangeScan& scan, const std::string& folder, const std::string& fileName)
 {
@@ -164,6 +192,14 @@ void storeDepthExternally(
 	scan.rangeImage.resize(0, 0);
 	ScanFiles::depth(scan) = fileName;
 	ScanFiles::depthIsExternal(scan) = true;
+}
+
+void storeExternally(
+	CObservation3DRangeScan& scan, const std::string& folder, std::size_t frame,
+	const std::string& colorExtension)
+{
+	storeColorExternally(scan, folder, externalImageName("color", frame, colorExtension));
+	storeDepthExternally(scan, folder, externalImageName("depth", frame, ".bin"));
 }
 
 mrpt::math::CMatrix_u16 readExternalDepth(const std::string& path, cv::Size size)

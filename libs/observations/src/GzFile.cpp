@@ -62,7 +62,8 @@ uint64_t GzInput::position() const
 	return offset < 0 ? size_ : std::min(uint64_t(offset), size_);
 }
 
-GzOutput::GzOutput(const std::string& path) : path_(path), file_(gzopen(path.c_str(), "wb1"))
+GzOutput::GzOutput(const std::string& path)
+	: path_(path), file_(gzopen(path.c_str(), ("wb" + std::to_string(kFast)).c_str()))
 {
 	if (!file_) fail();
 	gzbuffer(file_, kBufferBytes);

@@ -22,6 +22,7 @@ using mrpt::obs::CObservation3DRangeScan;
 
 constexpr double kLargestOffset = 1e-3;         // between colour and depth camera [m]
 constexpr double kLargestFocalMismatch = 0.01;  // between their intrinsics, of the focal length
+constexpr float kKinectRange = 10.0f;           // [m]
 
 [[noreturn]] void fail(const CObservation3DRangeScan& scan, const std::string& what)
 {
@@ -144,6 +145,24 @@ RgbdFrame rgbdFrameFrom(const CObservation3DRangeScan& scan)
 			scan, "sizes differ: colour " + text(frame.color.size()) + ", depth " +
 					  text(frame.depth.size()) + ", camera " + text(cameraSize));
 	return frame;
+}
+
+CObservation3DRangeScan::Ptr rangeScanFrom(
+	const cv::Mat& color, const cv::Mat& depth, float depthUnit, const mrpt::img::TCamera& camera)
+{
+	auto scan = CObservation3DRangeScan::Create();
+	scan->sensorLabel = "RGBD";
+	scan->cameraParams = scan->cameraParamsIntensity = camera;
+	scan->range_is_depth = true;
+	scan->rangeUnits = depthUnit;
+	scan->maxRange = kKinectRange;
+	scan->hasRangeImage = true;
+	scan->rangeImage.resize(depth.rows, depth.cols);
+	for (int row = 0; row < depth.rows; ++row)
+		std::copy_n(depth.ptr<uint16_t>(row), depth.cols, &scan->rangeImage(row, 0));
+	scan->hasIntensityImage = true;
+	scan->intensityImage = mrpt::img::CImage(color, mrpt::img::SHALLOW_COPY);
+	return scan;
 }
 
 int countValidDepth(const RgbdFrame& frame)

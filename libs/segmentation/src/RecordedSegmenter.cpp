@@ -33,7 +33,8 @@ void RecordedSegmenterOptions::describe(OptionFields& fields)
 	fields.text("file", file, "rawlog with the instances, as rawlog-segment writes it");
 	fields.number(
 		"max_time_difference", maxTimeDifference, 0, 1,
-		"of a frame and its instances [s]; a camera that plays a recording needs half a frame's time");
+		"of a frame and its instances [s]; a camera that plays a recording needs half a frame's "
+		"time");
 }
 
 void RecordedSegmenter::configure(
@@ -69,7 +70,7 @@ CObservationInstances::Ptr RecordedSegmenter::readNext()
 	{
 		const auto instances = std::dynamic_pointer_cast<CObservationInstances>(observation);
 		if (!instances) continue;
-		const std::string place = reader_->path() + ": instances at " + text(instances->timestamp);
+		const std::string place = reader_->name() + ": instances at " + text(instances->timestamp);
 		if (lastRead_ && instances->timestamp < *lastRead_)
 			throw InputError(
 				place + " come after those at " + text(*lastRead_) + "; run rawlog-segment again");
@@ -92,7 +93,7 @@ CObservationInstances::Ptr RecordedSegmenter::segment(const RgbdFrame& frame)
 	if (!reader_) throw UsageError("RecordedSegmenter: configure() was not called");
 	if (lastFrame_ && frame.time < *lastFrame_)
 		throw InputError(
-			reader_->path() + ": asked for the frame at " + text(frame.time) + " after that at " +
+			reader_->name() + ": asked for the frame at " + text(frame.time) + " after that at " +
 			text(*lastFrame_) + "; recorded instances are read in order of time");
 	lastFrame_ = frame.time;
 
@@ -101,7 +102,7 @@ CObservationInstances::Ptr RecordedSegmenter::segment(const RgbdFrame& frame)
 	if (next_->timestamp > frame.time + tolerance_) return nullptr;
 	if (next_->imageSize() != frame.color.size())
 		throw InputError(
-			reader_->path() + ": instances at " + text(next_->timestamp) + " are of an image of " +
+			reader_->name() + ": instances at " + text(next_->timestamp) + " are of an image of " +
 			text(next_->imageSize()) + ", but the frame's is " + text(frame.color.size()) +
 			"; make them from this rawlog with rawlog-segment");
 	next_->timestamp = frame.time;

@@ -1,15 +1,16 @@
+#include <mrpt/config/CConfigFileMemory.h>
 #include <mrpt/core/bits_math.h>
 #include <mrpt/core/initializer.h>
 #include <mrpt/obs/CObservationComment.h>
 #include <semloop/config/Error.h>
-#include <semloop/config/ReadText.h>
 #include <semloop/observations/CameraFile.h>
 #include <semloop/observations/UnixTime.h>
 #include <semloop/sensors/COniFileSensor.h>
 
 #include <algorithm>
-#include <charconv>
-#include <cmath>
+#include <set>
+#include <utility>
+#include <vector>
 
 IMPLEMENTS_GENERIC_SENSOR(COniFileSensor, semloop)
 
@@ -28,94 +29,103 @@ using namespace std::chrono_literals;
 constexpr auto kMarkEvery = 3s;  // a grabber keeps what came last until more comes
 constexpr auto kGiveUpAfter = 10s;
 
-[[noreturn]] void fail(
-	const std::string& section, const std::string& key, const std::string& value,
-	const std::string& allowed)
+/** The section without the keys that MRPT itself reads from that of any sensor. */
+mrpt::config::CConfigFileMemory ownKeys(const CConfigFileBase& config, const std::string& section)
 {
-	// MRPT's exceptions take a bracket for the end of a message.
-	throw UsageError(section + ": " + key + " = " + value + ": must be " + allowed);
-}
-
-double readNumber(
-	const CConfigFileBase& config, const std::string& section, const std::string& key,
-	double otherwise)
-{
-	const std::string text = readText(config, section, key);
-	if (text.empty()) return otherwise;
-	double value = 0;
-	const char* const last = text.data() + text.size();
-	const auto [end, error] = std::from_chars(text.data(), last, value);
-	if (error != std::errc() || end != last || !std::isfinite(value))
-		fail(section, key, text, "a number");
-	return value;
+	static const std::set<std::string> ofMrpt{
+		"driver", "sensorLabel", "process_rate", "max_queue_len", "grab_decimation"};
+	std::vector<std::string> keys;
+	config.getAllKeys(section, keys);
+	mrpt::config::CConfigFileMemory own;
+	for (const auto& key : keys)
+		if (ofMrpt.count(key) == 0) own.write(section, key, config.read_string(section, key, ""));
+	return own;
 }
 
 }  // namespace
 
+void COniFileSensorOptions::describe(OptionFields& f)
+{
+	f.text("file", file, "recording of OpenNI2 (.oni); must be given");
+	f.number(
+		"speed", speed, 0, 1000,
+		"1: as recorded; 2: twice as fast; 0: a frame each time it is asked");
+	f.text(
+		"start_time", startTime, "Unix time of the first frame [s]; the computer's unless given");
+	f.text(
+		"camera_file", cameraFile,
+		"intrinsics as `mrpt::img::TCamera` writes them; from the recorded field of view unless "
+		"given");
+	f.number("pose_x", x, -1000, 1000, "of the camera on the robot, forward [m]");
+	f.number("pose_y", y, -1000, 1000, "left [m]");
+	f.number("pose_z", z, -1000, 1000, "up [m]");
+	f.number("pose_yaw", yaw, -360, 360, "[deg]");
+	f.number("pose_pitch", pitch, -360, 360, "[deg]");
+	f.number("pose_roll", roll, -360, 360, "[deg]");
+}
+
+void COniFileSensorOptions::requireConsistent() const
+{
+	if (file.empty()) throw UsageError("file: missing; name a recording of OpenNI2, *.oni");
+	if (!startTime.empty() && !parseUnixTime(startTime))
+		throw UsageError("start_time = " + startTime + ": must be a Unix time in seconds");
+}
+
+mrpt::poses::CPose3D COniFileSensorOptions::pose() const
+{
+	using mrpt::DEG2RAD;
+	return mrpt::poses::CPose3D::FromXYZYawPitchRoll(
+		x, y, z, DEG2RAD(yaw), DEG2RAD(pitch), DEG2RAD(roll));
+}
+
 void COniFileSensor::loadConfig_sensorSpecific(
 	const CConfigFileBase& config, const std::string& section)
 {
-	file_ = readText(config, section, "file");
-	if (file_.empty()) fail(section, "file", file_, "a recording of OpenNI2, *.oni");
-	cameraFile_ = readText(config, section, "camera_file");
-
-	const auto number = [&](const std::string& key, double otherwise)
-	{ return readNumber(config, section, key, otherwise); };
-	speed_ = number("speed", 1);
-	if (!(speed_ >= 0 && speed_ <= 1000))
-		fail(
-			section, "speed", readText(config, section, "speed"),
-			"between 0 (a frame each time it is asked) and 1000; 1 is as recorded");
-
-	startTime_.reset();
-	const std::string start = readText(config, section, "start_time");
-	if (!start.empty()) startTime_ = parseUnixTime(start);
-	if (!start.empty() && !startTime_) fail(section, "start_time", start, "a Unix time in seconds");
-
-	sensorPose_ = mrpt::poses::CPose3D::FromXYZYawPitchRoll(
-		number("pose_x", 0), number("pose_y", 0), number("pose_z", 0),
-		mrpt::DEG2RAD(number("pose_yaw", 0)), mrpt::DEG2RAD(number("pose_pitch", 0)),
-		mrpt::DEG2RAD(number("pose_roll", 0)));
+	options_ = {};
+	options_.loadFromConfigFile(ownKeys(config, section), section);
+	camera_.reset();
+	if (options_.cameraFile.empty()) return;
+	try
+	{
+		camera_ = readCameraFile(options_.cameraFile);
+	}
+	catch (const UsageError& e)
+	{
+		// MRPT takes what comes before the first bracket for the place, and the rest for the message.
+		throw UsageError("configuration: [" + section + "] camera_file: " + e.what());
+	}
 }
 
 void COniFileSensor::initialize()
 {
-	recording_.emplace(file_);
-	next_ = recording_->next();
-	if (!next_)
-		throw InputError(
-			file_ + ": no colour and depth image in it were taken together: record it again");
-	camera_ = cameraFile_.empty() ? recording_->camera() : readCameraFile(cameraFile_);
-	if (cv::Size(int(camera_.ncols), int(camera_.nrows)) != next_->color.size())
-		throw InputError(
-			cameraFile_ + ": is for images of " + std::to_string(camera_.ncols) + "x" +
-			std::to_string(camera_.nrows) + " pixels, those of " + file_ + " have " +
-			std::to_string(next_->color.cols) + "x" + std::to_string(next_->color.rows));
-	firstTime_ = next_->time;
-	if (!startTime_) startTime_ = mrpt::Clock::now();
+	OniRecording recording(options_.file);
+	const auto start = parseUnixTime(options_.startTime).value_or(mrpt::Clock::now());
+	scans_.emplace(std::move(recording), camera_, start);
+	next_ = scans_->next();
+	firstTime_ = next_->timestamp;
 	playedSince_ = SteadyClock::now();
 	m_state = ssWorking;
 }
 
 bool COniFileSensor::isAtEnd() const
 {
-	if (!recording_ || next_) return false;
+	if (!scans_ || next_) return false;
 	if (failure_) std::rethrow_exception(failure_);
 	return true;
 }
 
-bool COniFileSensor::isDue(const OniFrame& frame) const
+bool COniFileSensor::isDue(const mrpt::obs::CObservation& frame) const
 {
 	const std::chrono::duration<double> played = SteadyClock::now() - playedSince_;
-	return std::chrono::duration<double>(frame.time - firstTime_) <= speed_ * played;
+	return std::chrono::duration<double>(frame.timestamp - firstTime_) <= options_.speed * played;
 }
 
 void COniFileSensor::doProcess()
 {
-	if (!recording_) throw InputError("COniFileSensor: plays only after initialize()");
+	if (!scans_) throw InputError("COniFileSensor: plays only after initialize()");
 	if (!next_)
 		waitForTheLast();
-	else if (speed_ == 0)
+	else if (options_.speed == 0)
 		queueNext();
 	else
 		while (next_ && isDue(*next_)) queueNext();
@@ -123,19 +133,16 @@ void COniFileSensor::doProcess()
 
 void COniFileSensor::queueNext()
 {
-	const auto scan = rangeScanFrom(*next_, recording_->depthUnit(), camera_);
-	lastTime_ =
-		*startTime_ + std::chrono::duration_cast<mrpt::Clock::duration>(next_->time - firstTime_);
-	scan->timestamp = lastTime_;
-	scan->sensorLabel = m_sensorLabel;
-	scan->sensorPose = sensorPose_;
-	appendObservation(scan);
+	lastTime_ = next_->timestamp;
+	next_->sensorLabel = m_sensorLabel;
+	next_->sensorPose = options_.pose();
+	appendObservation(next_);
 	forgetWhatWasLetGo();
-	kept_.push_back(scan);
+	kept_.push_back(next_);
 	next_.reset();
 	try
 	{
-		next_ = recording_->next();
+		next_ = scans_->next();
 	}
 	catch (const InputError&)
 	{
@@ -158,7 +165,7 @@ void COniFileSensor::waitForTheLast()
 	if (kept_.empty() || now - news > kGiveUpAfter)
 	{
 		if (failure_) std::rethrow_exception(failure_);
-		throw InputError(file_ + ": played to its end");
+		throw InputError(options_.file + ": played to its end");
 	}
 	if (!lastMark_ || now - std::max(news, *lastMark_) > kMarkEvery)
 	{
@@ -166,7 +173,7 @@ void COniFileSensor::waitForTheLast()
 		lastTime_ += 1s;
 		mark->timestamp = lastTime_;
 		mark->sensorLabel = m_sensorLabel;
-		mark->text = "the end of " + file_;
+		mark->text = "the end of " + options_.file;
 		appendObservation(mark);
 		lastMark_ = now;
 	}

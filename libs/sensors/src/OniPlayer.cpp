@@ -8,6 +8,8 @@
 #include <opencv2/imgproc.hpp>
 #include <thread>
 
+#include "OpenNi2.h"
+
 namespace semloop
 {
 namespace
@@ -19,16 +21,6 @@ using Clock = std::chrono::steady_clock;
 
 constexpr auto kPatience = std::chrono::seconds(5);  // a file that gives nothing for so long is cut
 constexpr int kWait = 200;                           // for one image [ms]
-
-/** Sets OpenNI2 up once for the process: each time its drivers look through all of USB. */
-void requireLibrary()
-{
-	static const openni::Status status = openni::OpenNI::initialize();
-	if (status != openni::STATUS_OK)
-		throw InputError(
-			"OpenNI2 has no drivers: install the package libopenni2-0, or look at the folder "
-			"OpenNI2/Drivers beside libOpenNI2.so.0");
-}
 
 /** The name that OpenNI2 shall open. It does not tell why it does not. */
 std::string requireOni(const std::string& path)
@@ -114,7 +106,7 @@ std::string text(cv::Size size)
 
 OniEndListener::OniEndListener(const std::string& name) : name_(name)
 {
-	requireLibrary();
+	startOpenNi2();
 	openni::OpenNI::addDeviceStateChangedListener(this);
 }
 

@@ -1,10 +1,12 @@
+#include <mrpt/core/format.h>
 #include <semloop/config/Error.h>
-#include <semloop/observations/CameraFrames.h>
+#include <semloop/observations/RgbdFrame.h>
 #include <semloop/sensors/OniRecording.h>
 
 #include <algorithm>
 #include <cmath>
 #include <deque>
+#include <utility>
 
 #include "OniPlayer.h"
 
@@ -13,7 +15,6 @@ namespace semloop
 namespace
 {
 constexpr std::size_t kLongestQueue = 60;  // images of one kind without any of the other
-constexpr float kLongestRange = 10.0f;     // of the cameras that OpenNI2 knows [m]
 
 /** Images of one kind that wait for their partners. */
 struct Queue
@@ -100,6 +101,11 @@ const std::string& OniRecording::path() const
 	return impl_->player.path();
 }
 
+cv::Size OniRecording::size() const
+{
+	return impl_->player.size();
+}
+
 float OniRecording::depthUnit() const
 {
 	return impl_->player.depthUnit();
@@ -139,21 +145,35 @@ double OniRecording::progress() const
 	return impl_->player.progress();
 }
 
-mrpt::obs::CObservation3DRangeScan::Ptr rangeScanFrom(
-	const OniFrame& frame, float depthUnit, const mrpt::img::TCamera& camera)
+OniScans::OniScans(
+	OniRecording recording, const std::optional<mrpt::img::TCamera>& camera,
+	mrpt::Clock::time_point start)
+	: recording_(std::move(recording)),
+	  camera_(camera ? *camera : recording_.camera()),
+	  start_(start)
 {
-	auto scan = mrpt::obs::CObservation3DRangeScan::Create();
-	scan->cameraParams = scan->cameraParamsIntensity = camera;
-	scan->relativePoseIntensityWRTDepth = sensorFromCamera();
-	scan->range_is_depth = true;
-	scan->rangeUnits = depthUnit;
-	scan->maxRange = kLongestRange;
-	scan->hasRangeImage = true;
-	scan->rangeImage.resize(frame.depth.rows, frame.depth.cols);
-	for (int row = 0; row < frame.depth.rows; ++row)
-		std::copy_n(frame.depth.ptr<uint16_t>(row), frame.depth.cols, &scan->rangeImage(row, 0));
-	scan->hasIntensityImage = true;
-	scan->intensityImage = mrpt::img::CImage(frame.color, mrpt::img::SHALLOW_COPY);
+	const cv::Size size = recording_.size(), ofCamera(int(camera_.ncols), int(camera_.nrows));
+	if (size == ofCamera) return;
+	const std::string sizes = mrpt::format(
+		"images of %dx%d pixels where the camera has %dx%d", size.width, size.height,
+		ofCamera.width, ofCamera.height);
+	throw InputError(
+		recording_.path() + ": " + sizes +
+		": give the right one (--camera, or camera_file of COniFileSensor)");
+}
+
+mrpt::obs::CObservation3DRangeScan::Ptr OniScans::next()
+{
+	const auto frame = recording_.next();
+	if (!frame && !firstTime_)
+		throw InputError(
+			recording_.path() +
+			": no colour and depth image in it were taken together: record it again");
+	if (!frame) return nullptr;
+	if (!firstTime_) firstTime_ = frame->time;
+	auto scan = rangeScanFrom(frame->color, frame->depth, recording_.depthUnit(), camera_);
+	scan->timestamp =
+		start_ + std::chrono::duration_cast<mrpt::Clock::duration>(frame->time - *firstTime_);
 	return scan;
 }
 

@@ -1,8 +1,10 @@
 #include <mrpt/core/format.h>
 #include <mrpt/hwdrivers/CGenericSensor.h>
+#include <mrpt/hwdrivers/COpenNI2Generic.h>
 #include <semloop/config/Error.h>
 #include <semloop/config/ExceptionMessage.h>
 #include <semloop/config/ReadText.h>
+#include <semloop/sensors/COniFileSensor.h>
 #include <semloop/sensors/SensorSource.h>
 
 #include <algorithm>
@@ -13,6 +15,7 @@
 #include <utility>
 #include <vector>
 
+#include "OpenNi2.h"
 #include "SensorChannel.h"
 
 using mrpt::hwdrivers::CGenericSensor;
@@ -77,6 +80,9 @@ SensorSource::SensorSource(
 	: options_(options), report_(std::move(report))
 {
 	const auto sensor = makeSensor(config, section);
+	if (std::dynamic_pointer_cast<mrpt::hwdrivers::COpenNI2Generic>(sensor) ||
+		std::dynamic_pointer_cast<COniFileSensor>(sensor))
+		startOpenNi2();
 	name_ = "[" + section + "] " + sensor->GetRuntimeClass()->className;
 	channel_ = std::make_shared<Channel>(sensor, name_, options, std::move(tap));
 	std::thread([channel = channel_] { channel->run(); }).detach();

@@ -17,9 +17,11 @@ cv::Mat readImageFile(const std::string& path, int imreadFlags);
 /** The folder beside a rawlog where its external images live: path without extension + "_Images". */
 std::string externalImagesFolder(const std::string& rawlogPath);
 
-/** Makes that folder, for a rawlog that is to be written; one of this name is removed: its images are about
- *  to be replaced. Throws InputError when it cannot be made. */
-std::string makeExternalImagesFolder(const std::string& rawlogPath);
+/** Makes that folder, without numbered images of an earlier run, for a rawlog that is to be written. A rawlog of
+ *  this name is removed before its images are: call this when the first frame is known to be good. Throws
+ *  InputError when something cannot be removed or made, and when the folder is a link: the images behind it are
+ *  another rawlog's. */
+std::string beginExternalImages(const std::string& rawlogPath);
 
 /** Name of the file of a frame's image: "color", 12, ".png" -> color_000012.png. */
 std::string externalImageName(
@@ -31,12 +33,6 @@ std::string externalImageName(
  *  stay. */
 void resolveExternalImages(mrpt::obs::CObservation& observation, const std::string& folder);
 
-/** Moves the colour image of a scan to folder/fileName, in the format of its extension, and leaves the
- *  name in the scan. Throws InputError when the file cannot be written. */
-void storeColorExternally(
-	mrpt::obs::CObservation3DRangeScan& scan, const std::string& folder,
-	const std::string& fileName);
-
 /** Moves the depth image of a scan to folder/fileName, in MRPT's format for external range images
  *  (gz of rows and columns as uint32 and row by row the uint16 values, little endian), and leaves the
  *  name in the scan. Throws InputError when the file cannot be written. */
@@ -44,8 +40,14 @@ void storeDepthExternally(
 	mrpt::obs::CObservation3DRangeScan& scan, const std::string& folder,
 	const std::string& fileName);
 
-/** Reads such a file. Unlike the scan's own load() it checks what it reads: throws InputError when the
- *  file is missing, damaged, cut, or of another size. */
+/** Moves both images of a scan, the frame of this number, to folder/color_NNNNNN<colorExtension>, in the format of
+ *  the extension, and folder/depth_NNNNNN.bin. Throws InputError when a file cannot be written. */
+void storeExternally(
+	mrpt::obs::CObservation3DRangeScan& scan, const std::string& folder, std::size_t frame,
+	const std::string& colorExtension);
+
+/** Reads a file of storeDepthExternally(). Unlike the scan's own load() it checks what it reads: throws
+ *  InputError when the file is missing, damaged, cut, or of another size. */
 mrpt::math::CMatrix_u16 readExternalDepth(const std::string& path, cv::Size size);
 
 }  // namespace semloop

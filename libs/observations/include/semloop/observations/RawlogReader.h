@@ -53,7 +53,6 @@ public:
 	 *  the file; throws as next(). */
 	std::optional<RawlogObject> nextObject();
 
-	const std::string& path() const { return path_; }
 	const std::string& name() const override { return path_; }
 	/** Position in the file as stored on disk. */
 	double progress() const override;

@@ -29,6 +29,12 @@ struct RgbdFrame
  *  A frame without one valid depth pixel is not an error here: callers decide. */
 RgbdFrame rgbdFrameFrom(const mrpt::obs::CObservation3DRangeScan& scan);
 
+/** The way back: a scan of colour (CV_8UC3, BGR; shared with the scan) and registered depth (CV_16UC1 of the same
+ *  size, in units of depthUnit [m], 0 = invalid), both inside, as a Kinect would give it ("RGBD", 10 m far). Time
+ *  and the sensor's pose are left to the caller. */
+mrpt::obs::CObservation3DRangeScan::Ptr rangeScanFrom(
+	const cv::Mat& color, const cv::Mat& depth, float depthUnit, const mrpt::img::TCamera& camera);
+
 /** Number of valid (> 0) depth pixels. */
 int countValidDepth(const RgbdFrame& frame);
 

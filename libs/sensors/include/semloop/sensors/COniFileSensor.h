@@ -3,6 +3,7 @@
 #include <mrpt/hwdrivers/CGenericSensor.h>
 #include <mrpt/img/TCamera.h>
 #include <mrpt/poses/CPose3D.h>
+#include <semloop/config/Options.h>
 #include <semloop/sensors/OniRecording.h>
 #include <semloop/sensors/RecordedSensor.h>
 
@@ -15,6 +16,23 @@
 
 namespace semloop
 {
+/** Keys are COpenNI2Sensor's where it has them. */
+struct COniFileSensorOptions : Options
+{
+	std::string file;
+	double speed = 1.0;
+	std::string startTime;  //!< text: a double is not as exact as the clock
+	std::string cameraFile;
+	double x = 0.0, y = 0.0, z = 0.0;           //!< [m]
+	double yaw = 0.0, pitch = 0.0, roll = 0.0;  //!< [deg]: without `_deg`, as MRPT's
+
+	mrpt::poses::CPose3D pose() const;
+	void requireConsistent() const override;
+
+protected:
+	void describe(OptionFields& fields) override;
+};
+
 /** Plays an .oni, a recording of OpenNI2's, as if its camera were there, for rawlog-grabber (with
  *  `-p libsemloop-sensors.so`) and `semloop-slam --live`:
  *
@@ -23,15 +41,8 @@ namespace semloop
  *      sensorLabel  = RGBD
  *      process_rate = 100        ; how often it is asked [Hz]
  *      file         = room.oni
- *      speed        = 1          ; 1 as recorded, 2 twice as fast, 0 a frame each time it is asked
- *      start_time   = 1305031453 ; Unix time of the first frame [s]; the computer's unless given
- *      camera_file  = xtion.ini  ; intrinsics (mrpt::img::TCamera); from the field of view unless given
- *      pose_x       = 0          ; of the camera on the robot [m], as for COpenNI2Sensor
- *      pose_y       = 0
- *      pose_z       = 0
- *      pose_yaw     = 0          ; [deg]
- *      pose_pitch   = 0
- *      pose_roll    = 0
+ *
+ *  doc/live.md has all keys.
  *
  *  It gives a CObservation3DRangeScan for each pair of colour and depth, images inside. Every frame comes,
  *  however seldom it is asked.
@@ -48,37 +59,32 @@ class COniFileSensor : public mrpt::hwdrivers::CGenericSensor, public RecordedSe
 public:
 	COniFileSensor() = default;
 
-	/** Opens the recording; throws as OniRecording does, and when it holds no pair. */
+	/** Opens the recording; throws as OniScans does. */
 	void initialize() override;
 	/** Queues the frames that are due. */
 	void doProcess() override;
 	bool isAtEnd() const override;
 
 protected:
-	/** Throws UsageError, naming section and key. */
+	/** Throws UsageError, naming section and key, or the camera's file. */
 	void loadConfig_sensorSpecific(
 		const mrpt::config::CConfigFileBase& config, const std::string& section) override;
 
 private:
 	using SteadyClock = std::chrono::steady_clock;
 
-	bool isDue(const OniFrame& frame) const;
+	bool isDue(const mrpt::obs::CObservation& frame) const;
 	void queueNext();
 	void forgetWhatWasLetGo();
 	void waitForTheLast();
 
-	std::string file_;
-	std::string cameraFile_;
-	double speed_ = 1;
-	std::optional<mrpt::Clock::time_point> startTime_;
-	mrpt::poses::CPose3D sensorPose_;
+	COniFileSensorOptions options_;
+	std::optional<mrpt::img::TCamera> camera_;  //!< of the camera_file
 
-	std::optional<OniRecording> recording_;
-	mrpt::img::TCamera camera_;
-	std::optional<OniFrame> next_;
+	std::optional<OniScans> scans_;
+	mrpt::obs::CObservation3DRangeScan::Ptr next_;
 	std::exception_ptr failure_;  //!< why there is no next one, unless it is the end
-	std::chrono::microseconds firstTime_{0};
-	mrpt::Clock::time_point lastTime_;
+	mrpt::Clock::time_point firstTime_, lastTime_;
 	SteadyClock::time_point playedSince_;
 
 	std::deque<std::weak_ptr<mrpt::obs::CObservation>> kept_;  //!< frames that somebody still has

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <mrpt/core/Clock.h>
 #include <mrpt/img/TCamera.h>
 #include <mrpt/obs/CObservation3DRangeScan.h>
 
@@ -7,6 +8,7 @@
 #include <cstddef>
 #include <memory>
 #include <opencv2/core/mat.hpp>
+#include <opencv2/core/types.hpp>
 #include <optional>
 #include <string>
 
@@ -54,6 +56,7 @@ public:
 	std::optional<OniFrame> next();
 
 	const std::string& path() const;
+	cv::Size size() const;  //!< of all images
 	/** What one unit of depth is, 0.001 or 0.0001 [m]. */
 	float depthUnit() const;
 	/** Intrinsics of the colour camera, hence of both images, as its field of view tells: f = size /
@@ -72,9 +75,26 @@ private:
 	std::unique_ptr<Impl> impl_;
 };
 
-/** The frame as a range scan that rgbdFrameFrom() takes, its images inside; depthUnit in metres. Time,
- *  label and pose of the sensor are left to the caller. */
-mrpt::obs::CObservation3DRangeScan::Ptr rangeScanFrom(
-	const OniFrame& frame, float depthUnit, const mrpt::img::TCamera& camera);
+/** The frames of a recording as range scans that rgbdFrameFrom() takes ("RGBD"), images inside. */
+class OniScans
+{
+public:
+	/** The camera is that of both images, the recording's unless given; the first scan gets the time `start`.
+	 *  Throws InputError when the camera is for images of another size, and as OniRecording::camera(). */
+	OniScans(
+		OniRecording recording, const std::optional<mrpt::img::TCamera>& camera,
+		mrpt::Clock::time_point start);
+
+	/** The next one; null at the end. Throws InputError as OniRecording::next(), and when there is none. */
+	mrpt::obs::CObservation3DRangeScan::Ptr next();
+
+	const OniRecording& recording() const { return recording_; }
+
+private:
+	OniRecording recording_;
+	const mrpt::img::TCamera camera_;
+	const mrpt::Clock::time_point start_;
+	std::optional<std::chrono::microseconds> firstTime_;
+};
 
 }  // namespace semloop
