@@ -1,6 +1,7 @@
 #include <benchmark/benchmark.h>
 #include <semloop/loop_closure/GeometricVerification.h>
 #include <semloop/loop_closure/ObjectAligner.h>
+#include <semloop/loop_closure/PlaceSearch.h>
 #include <semloop/loop_closure/SpectralMatcher.h>
 #include <Eigen/Core>
 
@@ -14,8 +15,8 @@ namespace
 {
 using namespace semloop;
 
-/** One object per square metre, 2.5 m high; pairs closer than 4 m are co-visible. */
-SemanticGraph randomMap(std::size_t objects, int labels, unsigned seed)
+/** One object per square metre, 2.5 m high. */
+SemanticGraph randomObjects(std::size_t objects, int labels, unsigned seed)
 {
 	std::mt19937 random(seed);
 	std::uniform_real_distribution<double> unit(0, 1);
@@ -29,6 +30,13 @@ SemanticGraph randomMap(std::size_t objects, int labels, unsigned seed)
 		vertex.position = {unit(random) * side, unit(random) * side, unit(random) * 2.5};
 		map.vertices.push_back(vertex);
 	}
+	return map;
+}
+
+/** Same; pairs closer than 4 m are co-visible. */
+SemanticGraph randomMap(std::size_t objects, int labels, unsigned seed)
+{
+	SemanticGraph map = randomObjects(objects, labels, seed);
 	for (std::size_t a = 0; a < objects; ++a)
 		for (std::size_t b = a + 1; b < objects; ++b)
 			if (map.distance(a, b) < 4) map.edges.insert({a, b});
@@ -68,6 +76,37 @@ void spectralMatch(benchmark::State& state)
 	for (auto _ : state) benchmark::DoNotOptimize(matcher.match(query, target));
 }
 BENCHMARK(spectralMatch)->Args({15, 60, 10})->Unit(benchmark::kMillisecond);
+
+/** Arguments: as above. The map is indexed before. */
+void placeSearch(benchmark::State& state)
+{
+	const auto target = randomObjects(state.range(1), static_cast<int>(state.range(2)), 1);
+	const auto query = localMap(target, state.range(0), 2);
+	const GraphIndex index(target);
+	for (auto _ : state) benchmark::DoNotOptimize(PlaceSearch(query, index).places());
+}
+BENCHMARK(placeSearch)
+	->Args({15, 60, 10})
+	->Args({13, 216, 15})
+	->Args({20, 10000, 20})
+	->Unit(benchmark::kMillisecond);
+
+/** Whole maps of N = M objects, 20 labels, against each other. */
+void placeSearchOfWholeMaps(benchmark::State& state)
+{
+	const auto target = randomObjects(state.range(0), 20, 1);
+	const auto query = localMap(target, state.range(0), 2);
+	const GraphIndex index(target);
+	for (auto _ : state) benchmark::DoNotOptimize(PlaceSearch(query, index).places());
+}
+BENCHMARK(placeSearchOfWholeMaps)->Arg(50)->Arg(200)->Arg(500)->Unit(benchmark::kMillisecond);
+
+void graphIndex(benchmark::State& state)
+{
+	const auto target = randomObjects(state.range(0), 20, 1);
+	for (auto _ : state) benchmark::DoNotOptimize(GraphIndex(target));
+}
+BENCHMARK(graphIndex)->Arg(216)->Arg(10000)->Unit(benchmark::kMillisecond);
 
 /** Share of zeros among the (N M)^2 entries of S, Eq. (5): off its diagonal there is an entry for two
  *  edges that join the same labels. */

@@ -25,7 +25,7 @@ struct YawPose
 		const mrpt::math::TPoint3D& from, const mrpt::math::TPoint3D& to, double c, double s)
 	{
 		YawPose pose;
-		const double norm = std::hypot(c, s);
+		const double norm = std::sqrt(c * c + s * s);
 		pose.cosine = c / norm;
 		pose.sine = s / norm;
 		pose.translation = to - pose * from;

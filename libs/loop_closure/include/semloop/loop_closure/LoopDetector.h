@@ -35,7 +35,9 @@ struct LoopVerdict
 	std::string reason;  //!< one line for a person, with the numbers behind it
 	/** The consistent ones, query id first; an object is in one match at most. */
 	std::vector<std::pair<ObjectId, ObjectId>> matches;
-	mrpt::poses::CPose3D T_target_query;  //!< meaningful when accepted
+	mrpt::poses::CPose3D T_target_query;  //!< meaningful when accepted, or with hasPose
+	bool hasPose = false;                 //!< T_target_query is the best guess
+	double probability = 0.0;  //!< that T_target_query is right, [0, 1]; 0 when not estimated
 	/** As many as matches, in their order: the local map has its own drift, so each object has its own
 	 *  correction. Empty when the detector measures none; T_target_query then holds for all. */
 	std::vector<MatchAlignment> alignments;

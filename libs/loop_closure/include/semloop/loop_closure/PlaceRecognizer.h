@@ -1,0 +1,64 @@
+#pragma once
+
+#include <semloop/config/Options.h>
+#include <semloop/loop_closure/GraphIndex.h>
+#include <semloop/loop_closure/GraphMatcher.h>
+#include <semloop/loop_closure/LoopDetector.h>
+#include <semloop/loop_closure/PlaceSearch.h>
+
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace semloop
+{
+struct PlaceRecognizerOptions : Options
+{
+	std::string matcher = "pairwise";
+	double minProbability = 0.9;  //!< of an accepted place
+	int minMatches = 3;
+	double maxYawSigma = 0.15;  //!< of an accepted pose [rad]
+	double maxPriorSigmas = 5;  //!< further from the prior no place is accepted
+	PlaceSearchOptions search;
+
+	/** Public: the loop detector has these keys in its own section. */
+	void describe(OptionFields& fields) override;
+};
+
+/** Recognises one semantic graph in another, without surfaces, and gives one of three answers:
+ *
+ *  accepted   the place found is right with minProbability or more;
+ *  ambiguous  one of several places is, but not which, or its yaw is open: ask again when the query has
+ *             grown;
+ *  rejected   no place is.
+ *
+ *  A matcher proposes places, and PlaceSearch says what each is worth and looks for rivals in the whole map:
+ *
+ *  pairwise           every pair of candidates proposes a place: no matcher;
+ *  spectral-verified  pairs of SpectralMatcher's matches do;
+ *  clique             pairs of CliqueMatcher's;
+ *  random-walk        pairs of RandomWalkMatcher's;
+ *  histogram          pairs of HistogramMatcher's;
+ *  spectral           the paper, as published: at least half of the query's edges are matched, and the pose
+ *                     is the least-squares one of all matches; no probability. */
+class PlaceRecognizer
+{
+public:
+	static std::vector<std::string> matcherNames();
+
+	/** Throws UsageError for a matcher of another name. */
+	explicit PlaceRecognizer(const PlaceRecognizerOptions& options = {});
+
+	/** Verdicts are by ids. Throws InputError when a graph cannot be used: see GraphIndex. */
+	LoopVerdict recognize(
+		const SemanticGraph& query, const SemanticGraph& target, const GraphIndex& targetIndex,
+		const std::optional<PosePrior>& prior = {}) const;
+
+private:
+	LoopVerdict publishedVerdict(const SemanticGraph& query, const SemanticGraph& target) const;
+
+	PlaceRecognizerOptions options_;
+	GraphMatcher::Ptr matcher_;  //!< null: pairwise
+};
+
+}  // namespace semloop

@@ -1,0 +1,182 @@
+#include <mrpt/core/format.h>
+#include <semloop/config/Error.h>
+#include <semloop/loop_closure/CliqueMatcher.h>
+#include <semloop/loop_closure/DescriptorMatchers.h>
+#include <semloop/loop_closure/GeometricVerification.h>
+#include <semloop/loop_closure/PlaceRecognizer.h>
+#include <semloop/loop_closure/SpectralMatcher.h>
+
+#include <algorithm>
+
+namespace semloop
+{
+namespace
+{
+using Decision = LoopVerdict::Decision;
+
+constexpr const char *kPairwise = "pairwise", *kPublished = "spectral";
+// Sec. IV-B
+constexpr double kPublishedEdgeShare = 0.5;
+constexpr double kEdgeLengthTolerance = 0.5;  // [m]
+
+void addMatches(
+	const SemanticGraph& query, const SemanticGraph& target, const std::vector<Match>& matches,
+	std::vector<std::pair<ObjectId, ObjectId>>& ids)
+{
+	for (const auto& [j, k] : matches)
+		ids.emplace_back(query.vertices[j].id, target.vertices[k].id);
+}
+
+/** Those that are not this one. */
+std::vector<Place> rivalsOf(
+	const Place& place, std::vector<Place> places, const PlaceSearch& search, double rivalDistance)
+{
+	places.erase(
+		std::remove_if(
+			places.begin(), places.end(),
+			[&](const Place& other) {
+				return search.distance(other.T_target_query, place.T_target_query) < rivalDistance;
+			}),
+		places.end());
+	return places;
+}
+}  // namespace
+
+void PlaceRecognizerOptions::describe(OptionFields& fields)
+{
+	fields.choice("matcher", matcher, PlaceRecognizer::matcherNames(), "what proposes places");
+	fields.number("min_probability", minProbability, 0.5, 1, "of an accepted place to be right");
+	fields.integer("min_matches", minMatches, 2, 1000, "objects that an accepted place has");
+	fields.degrees(
+		"max_yaw_sigma_deg", maxYawSigma, 0.01, 360,
+		"standard deviation of an accepted place's yaw [deg]");
+	fields.number(
+		"max_prior_sigmas", maxPriorSigmas, 0, 1000,
+		"distance of an accepted place from the prior [standard deviations]");
+	search.describe(fields);
+}
+
+std::vector<std::string> PlaceRecognizer::matcherNames()
+{
+	return {kPairwise, "spectral-verified", "clique", "random-walk", "histogram", kPublished};
+}
+
+PlaceRecognizer::PlaceRecognizer(const PlaceRecognizerOptions& options) : options_(options)
+{
+	const auto names = matcherNames();
+	if (std::find(names.begin(), names.end(), options.matcher) == names.end())
+	{
+		std::string list;
+		for (const auto& name : names) list += (list.empty() ? "" : ", ") + name;
+		throw UsageError("matcher '" + options.matcher + "' is not known; use one of " + list);
+	}
+	if (options.matcher == "clique")
+		matcher_ = CliqueMatcher::Create();
+	else if (options.matcher == "random-walk")
+		matcher_ = RandomWalkMatcher::Create();
+	else if (options.matcher == "histogram")
+		matcher_ = HistogramMatcher::Create();
+	else if (options.matcher != kPairwise)
+		matcher_ = SpectralMatcher::Create();
+}
+
+LoopVerdict PlaceRecognizer::publishedVerdict(
+	const SemanticGraph& query, const SemanticGraph& target) const
+{
+	LoopVerdict verdict;
+	verdict.queryObjects = query.vertices.size();
+	const auto matching = matcher_->match(query, target);
+	addMatches(query, target, matching.matches, verdict.matches);
+	verdict.candidates = verdict.matches;
+	verdict.matchingScore = matching.score;
+	verdict.matchedEdgeShare =
+		matchedEdgeShare(query, target, matching.matches, kEdgeLengthTolerance);
+	std::vector<std::pair<mrpt::math::TPoint3D, mrpt::math::TPoint3D>> pairs;
+	for (const auto& [j, k] : matching.matches)
+		pairs.emplace_back(query.vertices[j].position, target.vertices[k].position);
+	const auto pose = fitYawAndTranslation(pairs);
+	verdict.hasPose = pose.has_value();
+	if (pose) verdict.T_target_query = *pose;
+	verdict.reason = mrpt::format(
+		"%.0f %% of the %zu edges matched, needed are %.0f %%", 100 * verdict.matchedEdgeShare,
+		query.edges.size(), 100 * kPublishedEdgeShare);
+	if (pose && verdict.matchedEdgeShare >= kPublishedEdgeShare)
+		verdict.decision = Decision::Accepted;
+	return verdict;
+}
+
+LoopVerdict PlaceRecognizer::recognize(
+	const SemanticGraph& query, const SemanticGraph& target, const GraphIndex& targetIndex,
+	const std::optional<PosePrior>& prior) const
+{
+	LoopVerdict verdict;
+	verdict.queryObjects = query.vertices.size();
+	if (query.vertices.size() < 2 || target.vertices.size() < 2)
+	{
+		verdict.reason = mrpt::format(
+			"%zu objects against %zu: a place needs two on either side", query.vertices.size(),
+			target.vertices.size());
+		return verdict;
+	}
+	if (options_.matcher == kPublished) return publishedVerdict(query, target);
+
+	const PlaceSearch search(query, targetIndex, options_.search);
+	const auto places = search.places(prior);
+	auto proposed = places.found;
+	if (matcher_)
+	{
+		const auto matching = matcher_->match(query, target);
+		addMatches(query, target, matching.matches, verdict.candidates);
+		verdict.matchingScore = matching.score;
+		proposed = search.placesOf(matching.matches, prior).found;
+	}
+	if (proposed.empty())
+	{
+		verdict.reason = mrpt::format(
+			"no two of the %zu objects are in the map at their distance", query.vertices.size());
+		return verdict;
+	}
+
+	const Place& best = proposed.front();
+	const auto rivals = rivalsOf(best, places.found, search, options_.search.rivalDistance);
+	addMatches(query, target, best.matches, verdict.matches);
+	verdict.hasPose = true;
+	verdict.T_target_query = best.T_target_query;
+	verdict.probability = probabilityOf(best, query.vertices.size(), rivals, options_.search);
+	if (!rivals.empty() && best.evidence > 0)
+		verdict.runnerUp = std::clamp(rivals.front().evidence / best.evidence, 0.0, 1.0);
+	verdict.reason = mrpt::format(
+		"%zu of %zu objects fit one place (within %.2f m, evidence %.1f), the best other place has "
+		"%.1f: probability %.3f",
+		best.matches.size(), query.vertices.size(), best.sigma, best.evidence,
+		rivals.empty() ? 0.0 : rivals.front().evidence, verdict.probability);
+
+	if (int(best.matches.size()) < options_.minMatches)
+		verdict.reason += mrpt::format(", needed are %d objects", options_.minMatches);
+	else if (best.priorSigmas > options_.maxPriorSigmas)
+		verdict.reason += mrpt::format(
+			", but it is %.1f standard deviations from the prior, allowed are %.1f",
+			best.priorSigmas, options_.maxPriorSigmas);
+	else if (verdict.probability >= options_.minProbability && !places.complete)
+	{
+		verdict.decision = Decision::Ambiguous;
+		verdict.reason += ", but too many objects look alike to try every place";
+	}
+	else if (verdict.probability >= options_.minProbability && best.yawSigma > options_.maxYawSigma)
+	{
+		verdict.decision = Decision::Ambiguous;
+		verdict.reason += mrpt::format(
+			", but its yaw is uncertain by %.2f rad, allowed are %.2f", best.yawSigma,
+			options_.maxYawSigma);
+	}
+	else if (verdict.probability >= options_.minProbability)
+		verdict.decision = Decision::Accepted;
+	else if (
+		probabilityOf(best, query.vertices.size(), {}, options_.search) >= options_.minProbability)
+		verdict.decision = Decision::Ambiguous;
+	else
+		verdict.reason += mrpt::format(", needed is %.2f", options_.minProbability);
+	return verdict;
+}
+
+}  // namespace semloop

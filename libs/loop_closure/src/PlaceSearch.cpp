@@ -1,0 +1,348 @@
+#include <semloop/config/Error.h>
+#include <semloop/loop_closure/PlaceSearch.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+#include "MatchCandidates.h"
+#include "PlaceEvidence.h"
+
+namespace semloop
+{
+namespace
+{
+using mrpt::math::TPoint3D;
+
+constexpr double kMinBaseline = 0.25;    // horizontal, below it two centres do not tell the yaw [m]
+constexpr double kHorizontalGate = 0.6;  // difference of two distances, four times 0.15 [m]
+constexpr double kVerticalGate = 0.45;   // three times 0.15 [m]
+constexpr std::size_t kAllPairsUpTo = 16;  // objects of the query
+// Candidates looked at. Thousands of objects that all look alike must not take for ever: about a second.
+constexpr std::ptrdiff_t kMostWork = 200'000'000;
+constexpr std::size_t kHypotheses = 12;  // that are refined
+constexpr double kHopeless =
+	40;  // evidence behind the best from where no rival comes back, twice 20
+constexpr double kSamePose = 0.4;  // hypotheses so near lead to one place [m]
+
+struct Proposal
+{
+	YawPose pose;
+	double support = 0;
+};
+
+/** The best few poses that differ. */
+class Shortlist
+{
+public:
+	explicit Shortlist(const MatchCandidates& candidates) : candidates_(candidates) {}
+
+	/** What does not reach this is not worth adding. */
+	double least() const
+	{
+		if (proposals_.empty()) return 0;
+		const double best = proposals_.front().support;
+		const double hopeless = best - std::max(kHopeless, 0.5 * best);
+		return proposals_.size() < kHypotheses ? hopeless
+											   : std::max(hopeless, proposals_.back().support);
+	}
+
+	void add(const Proposal& proposal)
+	{
+		for (auto other = proposals_.begin(); other != proposals_.end(); ++other)
+			if (squaredDistance(other->pose, proposal.pose) < kSamePose * kSamePose)
+			{
+				if (other->support >= proposal.support) return;
+				proposals_.erase(other);
+				break;
+			}
+		const auto place = std::upper_bound(
+			proposals_.begin(), proposals_.end(), proposal.support,
+			[](double support, const Proposal& other) { return support > other.support; });
+		proposals_.insert(place, proposal);
+		if (proposals_.size() > kHypotheses) proposals_.pop_back();
+		while (proposals_.back().support < least()) proposals_.pop_back();
+	}
+
+	const std::vector<Proposal>& proposals() const { return proposals_; }
+
+	/** Mean over the query's centres. */
+	double squaredDistance(const YawPose& a, const YawPose& b) const
+	{
+		const double cosine = a.cosine * b.cosine + a.sine * b.sine;
+		return (a * candidates_.centroid() - b * candidates_.centroid()).sqrNorm() +
+			   2 * (1 - cosine) * candidates_.spread();
+	}
+
+private:
+	const MatchCandidates& candidates_;
+	std::vector<Proposal> proposals_;
+};
+
+double horizontalDistance(const TPoint3D& a, const TPoint3D& b)
+{
+	return std::hypot(a.x - b.x, a.y - b.y);
+}
+
+/** lengthQ is the horizontal distance of the first two. Empty when the distances disagree or leave the yaw
+ *  open. */
+std::optional<YawPose> poseOfTwo(
+	const TPoint3D& q1, const TPoint3D& q2, double lengthQ, const TPoint3D& t1, const TPoint3D& t2)
+{
+	const auto dq = q2 - q1, dt = t2 - t1;
+	if (std::abs(dq.z - dt.z) > kVerticalGate) return {};
+	const double squaredT = dt.x * dt.x + dt.y * dt.y;
+	if (squaredT > mrpt::square(lengthQ + kHorizontalGate) ||
+		squaredT < mrpt::square(std::max(kMinBaseline, lengthQ - kHorizontalGate)))
+		return {};
+	return YawPose::about(
+		(q1 + q2) * 0.5, (t1 + t2) * 0.5, dq.x * dt.x + dq.y * dt.y, dq.x * dt.y - dq.y * dt.x);
+}
+
+TPoint3D pointOf(const MatchCandidates::Candidate& c)
+{
+	return {double(c.x), double(c.y), double(c.z)};
+}
+}  // namespace
+
+void PlaceSearchOptions::describe(OptionFields& fields)
+{
+	fields.number(
+		"reobserved_share", reobservedShare, 0.01, 0.99,
+		"share of the query's objects that the map has too, when the place is known");
+	fields.number(
+		"label_accuracy", labelAccuracy, 0.01, 0.999,
+		"probability that two observations of one object have one label");
+	fields.number(
+		"same_model_share", sameModelShare, 0.0001, 0.5,
+		"share of different objects that look the same");
+	fields.number(
+		"min_sigma", minSigma, 0.001, 10, "least error of a centre that is considered [m]");
+	fields.number("max_sigma", maxSigma, 0.001, 10, "largest error of a centre, same [m]");
+	fields.number(
+		"bad_centre_share", badCentreShare, 0.0001, 0.9,
+		"share of objects whose centre's error is three times that");
+	fields.number(
+		"rival_distance", rivalDistance, 0.01, 100,
+		"a pose that moves the query's objects at least this far from ours is a rival [m]");
+	fields.number(
+		"prior_doubt", priorDoubt, 0, 1,
+		"probability that odometry's prior is wrong, and the query may be anywhere");
+	fields.number(
+		"odds_per_evidence", oddsPerEvidence, 0, 10,
+		"calibration: log odds for a unit of evidence above that of all rivals");
+	fields.number(
+		"odds_per_share", oddsPerShare, 0, 1000,
+		"calibration: log odds for the matched share of the query");
+	fields.number(
+		"even_odds", evenOdds, -1000, 1000, "calibration: sum of both at a probability of 0.5");
+}
+
+void PlaceSearchOptions::requireConsistent() const
+{
+	if (minSigma > maxSigma) throw UsageError("min_sigma: must not be larger than max_sigma");
+}
+
+class PlaceSearch::Impl
+{
+public:
+	Impl(
+		const SemanticGraph& query, const GraphIndex& itsTarget,
+		const PlaceSearchOptions& itsOptions)
+		: options(itsOptions), target(itsTarget), candidates(query, target, options)
+	{
+		for (std::size_t j = 0; j < candidates.size(); ++j)
+			if (!candidates.of(j).empty()) probes.push_back(j);
+		// Few candidates make few poses.
+		std::stable_sort(
+			probes.begin(), probes.end(),
+			[&](std::size_t a, std::size_t b)
+			{ return candidates.of(a).size() < candidates.of(b).size(); });
+		const auto end = probes.begin() + std::ptrdiff_t(std::min(probes.size(), kAllPairsUpTo));
+		others.assign(end, probes.end());
+		probes.erase(end, probes.end());
+	}
+
+	const PlaceSearchOptions options;
+	const GraphIndex& target;
+	const MatchCandidates candidates;
+	std::vector<std::size_t> probes,
+		others;  //!< objects with candidates; pairs are made of the probes
+};
+
+namespace
+{
+/** One search, with or without a prior. */
+class Search
+{
+public:
+	Search(const PlaceSearch::Impl& impl, const std::optional<PosePrior>& prior)
+		: impl_(impl),
+		  density_(impl.candidates, impl.target.area(), impl.options.priorDoubt, prior),
+		  evidence_(impl.candidates, impl.target.size(), density_, impl.options),
+		  shortlist_(impl.candidates),
+		  probesMost_(evidence_.mostSupport(impl.probes)),
+		  othersMost_(evidence_.mostSupport(impl.others))
+	{
+	}
+
+	/** Two objects and all that they may be. */
+	void tryAll()
+	{
+		const auto& probes = impl_.probes;
+		for (std::size_t a = 0; a < probes.size(); ++a)
+			for (std::size_t b = a + 1; b < probes.size(); ++b) tryAll(probes[a], probes[b]);
+	}
+
+	void tryPairsOf(const std::vector<Match>& matches)
+	{
+		const auto& query = impl_.candidates;
+		for (std::size_t a = 0; a < matches.size(); ++a)
+			for (std::size_t b = a + 1; b < matches.size(); ++b)
+			{
+				const auto &q1 = query.point(matches[a].query), &q2 = query.point(matches[b].query);
+				if (const auto pose = poseOfTwo(
+						q1, q2, horizontalDistance(q1, q2), impl_.target.point(matches[a].target),
+						impl_.target.point(matches[b].target)))
+					propose(*pose);
+			}
+	}
+
+	/** Of what was tried. */
+	Places best()
+	{
+		std::vector<Hypothesis> all;
+		for (const auto& proposal : shortlist_.proposals())
+			if (auto refined = evidence_.refine(proposal.pose); refined.matches.size() >= 2)
+				all.push_back(std::move(refined));
+		std::stable_sort(
+			all.begin(), all.end(),
+			[](const auto& a, const auto& b) { return a.evidence > b.evidence; });
+		std::vector<YawPose> poses;
+		Places places;
+		places.complete = hasTime();
+		for (auto& hypothesis : all)
+		{
+			if (std::any_of(
+					poses.begin(), poses.end(),
+					[&](const YawPose& better) { return isSame(better, hypothesis.pose); }))
+				continue;
+			poses.push_back(hypothesis.pose);
+			TPoint3D pivot;
+			for (const auto& match : hypothesis.matches)
+				pivot += impl_.candidates.point(match.query);
+			pivot *= 1.0 / double(hypothesis.matches.size());
+			const auto pose = density_.withPriorsYaw(hypothesis.pose, pivot, hypothesis.yawSigma);
+			places.found.push_back(
+				{pose.toPose3D(), std::move(hypothesis.matches), hypothesis.evidence,
+				 hypothesis.sigma, hypothesis.yawSigma, density_.sigmas(hypothesis.pose)});
+		}
+		return places;
+	}
+
+private:
+	void tryAll(std::size_t a, std::size_t b)
+	{
+		const auto &q1 = impl_.candidates.point(a), &q2 = impl_.candidates.point(b);
+		const double length = horizontalDistance(q1, q2);
+		if (length < kMinBaseline) return;
+		const double reach = length + kHorizontalGate;
+		for (const auto& first : impl_.candidates.of(a))
+		{
+			const auto [begin, end] = MatchCandidates::range(
+				impl_.candidates.of(b), double(first.x) - reach, double(first.x) + reach);
+			pairs_ += end - begin;
+			if (!hasTime()) return;
+			for (const auto* second = begin; second != end; ++second)
+				if (second->target != first.target)
+					if (const auto pose =
+							poseOfTwo(q1, q2, length, pointOf(first), pointOf(*second)))
+						propose(*pose);
+		}
+	}
+
+	bool isSame(const YawPose& a, const YawPose& b) const
+	{
+		return shortlist_.squaredDistance(a, b) < mrpt::square(impl_.options.rivalDistance);
+	}
+
+	bool hasTime() const { return pairs_ + evidence_.work() < kMostWork; }
+
+	void propose(const YawPose& pose)
+	{
+		const double least = shortlist_.least();
+		const bool isSmall = impl_.others.empty();
+		// The others will not differ much from the probes.
+		const double leastOfProbes = isSmall ? least : 0.5 * mostOfProbes_;
+		double support = evidence_.support(pose, impl_.probes, probesMost_, leastOfProbes);
+		if (support < leastOfProbes) return;
+		if (!isSmall)
+		{
+			mostOfProbes_ = std::max(mostOfProbes_, support);
+			support += evidence_.support(pose, impl_.others, othersMost_, least - support);
+			if (support < least) return;
+		}
+		support += density_.log(pose) - density_.most();
+		if (support > 0 && support >= shortlist_.least()) shortlist_.add({pose, support});
+	}
+
+	const PlaceSearch::Impl& impl_;
+	const PoseDensity density_;
+	PlaceEvidence evidence_;
+	Shortlist shortlist_;
+	const double probesMost_, othersMost_;
+	double mostOfProbes_ = 0;   //!< so far
+	std::ptrdiff_t pairs_ = 0;  //!< looked at
+};
+
+}  // namespace
+
+PlaceSearch::PlaceSearch(
+	const SemanticGraph& query, const GraphIndex& target, const PlaceSearchOptions& options)
+	: impl_(std::make_unique<Impl>(query, target, options))
+{
+}
+PlaceSearch::~PlaceSearch() = default;
+
+Places PlaceSearch::places(const std::optional<PosePrior>& prior) const
+{
+	Search search(*impl_, prior);
+	search.tryAll();
+	return search.best();
+}
+
+Places PlaceSearch::placesOf(
+	const std::vector<Match>& matches, const std::optional<PosePrior>& prior) const
+{
+	Search search(*impl_, prior);
+	search.tryPairsOf(matches);
+	return search.best();
+}
+
+double PlaceSearch::distance(const mrpt::poses::CPose3D& a, const mrpt::poses::CPose3D& b) const
+{
+	double sum = 0;
+	for (std::size_t j = 0; j < impl_->candidates.size(); ++j)
+	{
+		const auto& p = impl_->candidates.point(j);
+		sum += (a.composePoint(p) - b.composePoint(p)).sqrNorm();
+	}
+	return std::sqrt(sum / double(std::max<std::size_t>(1, impl_->candidates.size())));
+}
+
+double probabilityOf(
+	const Place& place, std::size_t objects, const std::vector<Place>& rivals,
+	const PlaceSearchOptions& options)
+{
+	// ln(1 + sum of e^E), without overflow
+	double most = 0, sum = 0;
+	for (const auto& rival : rivals) most = std::max(most, rival.evidence);
+	for (const auto& rival : rivals) sum += std::exp(rival.evidence - most);
+	const double others = most + std::log(sum + std::exp(-most));
+	const double share = double(place.matches.size()) / double(std::max<std::size_t>(1, objects));
+	const double odds = options.oddsPerEvidence * (place.evidence - others) +
+						options.oddsPerShare * share - options.evenOdds;
+	return 1 / (1 + std::exp(-odds));
+}
+
+}  // namespace semloop

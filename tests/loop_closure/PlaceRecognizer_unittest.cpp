@@ -1,0 +1,156 @@
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <semloop/config/Error.h>
+#include <semloop/loop_closure/PlaceRecognizer.h>
+
+#include <numeric>
+
+#include "GraphFixtures.h"
+#include "TemporaryFolder.h"
+
+namespace
+{
+using namespace semloop;
+using namespace semloop::fixtures;
+using Decision = LoopVerdict::Decision;
+using testing::HasSubstr;
+
+LoopVerdict recognized(
+	const SemanticGraph& query, const SemanticGraph& target,
+	const std::string& matcher = "pairwise", const std::optional<PosePrior>& prior = {})
+{
+	PlaceRecognizerOptions options;
+	options.matcher = matcher;
+	return PlaceRecognizer(options).recognize(query, target, GraphIndex(target), prior);
+}
+
+class EveryMatcher : public testing::TestWithParam<std::string>
+{
+};
+
+TEST_P(EveryMatcher, AcceptsADriftedCopyByItsIds)
+{
+	const auto query = randomRoom(10, 8, 2);
+	const auto T = yawPose(0.4, -0.3, 0.1, 0.2);
+	auto target = moved(query, T);
+	for (auto& v : target.vertices) v.id += 100;
+	const auto verdict = recognized(query, target, GetParam());
+	EXPECT_EQ(verdict.decision, Decision::Accepted) << verdict.reason;
+	ASSERT_EQ(verdict.matches.size(), 10u);
+	for (const auto& [from, to] : verdict.matches) EXPECT_EQ(to, from + 100);
+	EXPECT_TRUE(verdict.hasPose);
+	EXPECT_LT(verdict.T_target_query.distanceTo(T), 1e-4);
+	EXPECT_EQ(verdict.queryObjects, 10u);
+}
+
+TEST_P(EveryMatcher, RejectsWithAReasonWhatHasNothingToMatch)
+{
+	const auto room = randomRoom(10, 8, 2);
+	SemanticGraph one;
+	one.vertices.push_back(room.vertices[0]);
+	const SemanticGraph none;
+	for (const auto& [query, target] :
+		 {std::pair{none, room}, {room, none}, {one, room}, {room, one}})
+	{
+		const auto verdict = recognized(query, target, GetParam());
+		EXPECT_EQ(verdict.decision, Decision::Rejected);
+		EXPECT_THAT(verdict.reason, HasSubstr("needs two"));
+		EXPECT_FALSE(verdict.hasPose);
+	}
+}
+
+INSTANTIATE_TEST_SUITE_P(
+	PlaceRecognizer, EveryMatcher, testing::ValuesIn(PlaceRecognizer::matcherNames()),
+	[](const auto& testInfo)
+	{
+		std::string name = testInfo.param;
+		for (char& c : name)
+			if (c == '-') c = '_';
+		return name;
+	});
+
+TEST(PlaceRecognizer, AnotherBuildingIsRejectedWithTheNumbers)
+{
+	int rejected = 0;
+	for (unsigned seed = 0; seed < 20; ++seed)
+	{
+		const auto verdict = recognized(randomRoom(10, 8, seed), randomRoom(20, 8, 1000 + seed));
+		EXPECT_NE(verdict.decision, Decision::Accepted) << verdict.reason;
+		rejected += verdict.decision == Decision::Rejected;
+		EXPECT_THAT(verdict.reason, testing::ContainsRegex("of 10 objects fit|no two of the 10"));
+	}
+	EXPECT_GE(rejected, 18);
+}
+
+TEST(PlaceRecognizer, ADeskThatStandsTwiceIsAmbiguousUntilAPriorTells)
+{
+	const auto desk = randomRoom(7, 7, 5);
+	const auto away = yawPose(30, 0, 0, 0.5);
+	const auto target = united(desk, moved(desk, away));
+	for (const char* matcher : {"pairwise", "spectral-verified"})
+	{
+		const auto verdict = recognized(desk, target, matcher);
+		EXPECT_EQ(verdict.decision, Decision::Ambiguous) << verdict.reason;
+		EXPECT_NEAR(verdict.runnerUp, 1, 1e-3);
+		EXPECT_LT(verdict.probability, 0.5);
+	}
+	PosePrior prior;
+	prior.T_target_query = away;
+	const auto verdict = recognized(desk, target, "pairwise", prior);
+	EXPECT_EQ(verdict.decision, Decision::Accepted) << verdict.reason;
+	EXPECT_LT(verdict.T_target_query.distanceTo(away), 1e-3);
+}
+
+TEST(PlaceRecognizer, APlaceFarFromThePriorIsNotAccepted)
+{
+	const auto desk = fourObjects();
+	PosePrior prior;
+	prior.T_target_query = yawPose(0.5, 0.5, 0, 0.1);
+	EXPECT_EQ(recognized(desk, desk, "pairwise", prior).decision, Decision::Accepted);
+	prior.T_target_query = yawPose(120, 0, 0, 0);
+	const auto verdict = recognized(desk, desk, "pairwise", prior);
+	EXPECT_EQ(verdict.decision, Decision::Rejected);
+	EXPECT_THAT(verdict.reason, HasSubstr("standard deviations from the prior, allowed are 5.0"));
+	EXPECT_TRUE(verdict.hasPose);
+}
+
+TEST(PlaceRecognizer, AYawThatIsOpenIsAmbiguous)
+{
+	// Within 0.2 m of each other, measured as well as min_sigma says.
+	const auto cluster = complete(
+		{vertex(0, "cup", 0, 0, 1), vertex(1, "plate", 0.26, 0, 1), vertex(2, "fork", 0, 0.26, 1),
+		 vertex(3, "vase", 0.26, 0.2, 1.2)});
+	const auto verdict = recognized(cluster, cluster);
+	EXPECT_EQ(verdict.decision, Decision::Accepted) << verdict.reason;
+	PlaceRecognizerOptions options;
+	options.maxYawSigma = 0.05;
+	const auto strict = PlaceRecognizer(options).recognize(cluster, cluster, GraphIndex(cluster));
+	EXPECT_EQ(strict.decision, Decision::Ambiguous);
+	EXPECT_THAT(strict.reason, HasSubstr("yaw is uncertain by 0.0"));
+}
+
+TEST(PlaceRecognizer, ThePublishedMatcherTakesHalfOfTheEdgesForALoop)
+{
+	// Five of ten objects are elsewhere: 10 of 45 edges are left.
+	const auto query = randomRoom(10, 10, 4);
+	auto target = query;
+	for (std::size_t i = 0; i < 5; ++i)
+		target.vertices[i].position.x += 10 * double((i + 1) * (i + 1));
+	const auto verdict = recognized(query, target, "spectral");
+	EXPECT_EQ(verdict.decision, Decision::Rejected);
+	EXPECT_NEAR(verdict.matchedEdgeShare, 10.0 / 45, 1e-9);
+	EXPECT_THAT(verdict.reason, HasSubstr("22 % of the 45 edges"));
+	EXPECT_EQ(recognized(query, target).decision, Decision::Accepted);
+}
+
+TEST(PlaceRecognizer, AnUnknownMatcherIsWrongUsage)
+{
+	PlaceRecognizerOptions options;
+	options.matcher = "magic";
+	EXPECT_THAT(
+		messageOf<UsageError>([&] { PlaceRecognizer recognizer(options); }),
+		testing::AllOf(
+			HasSubstr("'magic'"),
+			HasSubstr("pairwise, spectral-verified, clique, random-walk, histogram, spectral")));
+}
+}  // namespace
