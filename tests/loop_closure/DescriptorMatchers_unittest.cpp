@@ -64,6 +64,13 @@ TYPED_TEST(DescriptorMatchers, GiveTheSameTwice)
 	EXPECT_EQ(first.score, second.score);
 }
 
+TYPED_TEST(DescriptorMatchers, RefuseWhatWouldTakeMinutes)
+{
+	SemanticGraph field;
+	for (int i = 0; i < 2000; ++i) field.vertices.push_back(vertex(ObjectId(i), "chair", i, 0, 0));
+	EXPECT_THROW(TypeParam().match(field, field), InputError);
+}
+
 TEST(HistogramMatcher, TheSimilarityIsTheCosineOfPathCounts)
 {
 	// From the lamp: one path lamp-chair-table here; there also lamp-chair-cup: cosine 1 / sqrt(2).

@@ -1,6 +1,7 @@
 #include <mrpt/core/initializer.h>
 #include <semloop/association/Assignment.h>
 #include <semloop/association/MatchingCost.h>
+#include <semloop/config/Error.h>
 #include <semloop/loop_closure/DescriptorMatchers.h>
 
 #include <algorithm>
@@ -25,6 +26,8 @@ namespace semloop
 {
 namespace
 {
+constexpr double kMostSteps = 5e9;  // of the assignment: some seconds
+
 /** How often a vertex' neighbourhood reads so, by the labels' numbers packed into a key, ascending. */
 using Descriptor = std::vector<std::pair<std::uint64_t, float>>;
 
@@ -86,6 +89,17 @@ double overlap(const Descriptor& a, const Descriptor& b, const Combine& combine)
 			++j;
 	}
 	return sum;
+}
+
+void requireFeasible(const SemanticGraph& query, const SemanticGraph& target)
+{
+	const auto smaller = double(std::min(query.vertices.size(), target.vertices.size()));
+	const auto larger = double(std::max(query.vertices.size(), target.vertices.size()));
+	if (smaller * smaller * larger > kMostSteps)
+		throw InputError(
+			"graphs of " + std::to_string(query.vertices.size()) + " and " +
+			std::to_string(target.vertices.size()) +
+			" objects are too large for this matcher; take another or smaller graphs");
 }
 
 /** The assignment of the largest sum of similarities, which are in [0, 1]; pairs of different labels are
@@ -150,22 +164,30 @@ std::vector<Descriptor> pathsOf(
 	const LabelNumbers& numbers)
 {
 	const auto neighbours = neighboursOf(graph);
-	std::vector<Descriptor> descriptors;
+	std::vector<Descriptor> ends;  // of the second edge, by the vertex in the middle
 	std::vector<std::uint64_t> keys;
-	for (std::size_t start = 0; start < graph.vertices.size(); ++start)
+	for (const auto& around : neighbours)
 	{
 		keys.clear();
+		for (const std::size_t end : around) keys.push_back(labels[end]);
+		ends.push_back(counted(keys));
+	}
+	std::vector<Descriptor> descriptors;
+	for (std::size_t start = 0; start < graph.vertices.size(); ++start)
+	{
+		std::map<std::uint64_t, float> counts;
 		for (const std::size_t middle : neighbours[start])
 		{
 			const std::uint64_t key = numbers.extended(labels[start], labels[middle]);
-			for (const std::size_t end : neighbours[middle])
-				if (end != start) keys.push_back(numbers.extended(key, labels[end]));
+			for (const auto& [label, count] : ends[middle])
+				counts[numbers.extended(key, label)] += count;
+			--counts[numbers.extended(key, labels[start])];  // straight back is no path
 		}
-		auto descriptor = counted(keys);
 		float squared = 0;
-		for (const auto& [key, count] : descriptor) squared += count * count;
-		for (auto& [key, count] : descriptor) count /= std::sqrt(squared);
-		descriptors.push_back(std::move(descriptor));
+		for (const auto& [key, count] : counts) squared += count * count;
+		auto& descriptor = descriptors.emplace_back();
+		for (const auto& [key, count] : counts)
+			if (count > 0) descriptor.emplace_back(key, count / std::sqrt(squared));
 	}
 	return descriptors;
 }
@@ -188,6 +210,7 @@ void RandomWalkMatcher::configure(
 GraphMatching RandomWalkMatcher::match(
 	const SemanticGraph& query, const SemanticGraph& target) const
 {
+	requireFeasible(query, target);
 	LabelNumbers numbers;
 	const auto queryLabels = numbers.of(query), targetLabels = numbers.of(target);
 	const auto walks = walksOf(query, queryLabels, numbers, options);
@@ -219,6 +242,7 @@ void HistogramMatcher::configure(
 
 GraphMatching HistogramMatcher::match(const SemanticGraph& query, const SemanticGraph& target) const
 {
+	requireFeasible(query, target);
 	LabelNumbers numbers;
 	const auto queryLabels = numbers.of(query), targetLabels = numbers.of(target);
 	const auto paths = pathsOf(query, queryLabels, numbers);

@@ -21,8 +21,8 @@ constexpr std::size_t kAllPairsUpTo = 16;  // objects of the query
 // Candidates looked at. Thousands of objects that all look alike must not take for ever: about a second.
 constexpr std::ptrdiff_t kMostWork = 200'000'000;
 constexpr std::size_t kHypotheses = 12;  // that are refined
-constexpr double kHopeless =
-	40;  // evidence behind the best from where no rival comes back, twice 20
+// Evidence behind the best from where no rival comes back: the refinement adds half of it at most.
+constexpr double kHopeless = 40;
 constexpr double kSamePose = 0.4;  // hypotheses so near lead to one place [m]
 
 struct Proposal
@@ -166,8 +166,8 @@ public:
 	const PlaceSearchOptions options;
 	const GraphIndex& target;
 	const MatchCandidates candidates;
-	std::vector<std::size_t> probes,
-		others;  //!< objects with candidates; pairs are made of the probes
+	/** Objects with candidates; pairs are made of the probes. */
+	std::vector<std::size_t> probes, others;
 };
 
 namespace
@@ -197,9 +197,10 @@ public:
 	void tryPairsOf(const std::vector<Match>& matches)
 	{
 		const auto& query = impl_.candidates;
-		for (std::size_t a = 0; a < matches.size(); ++a)
+		for (std::size_t a = 0; a < matches.size() && hasTime(); ++a)
 			for (std::size_t b = a + 1; b < matches.size(); ++b)
 			{
+				++pairs_;
 				const auto &q1 = query.point(matches[a].query), &q2 = query.point(matches[b].query);
 				if (const auto pose = poseOfTwo(
 						q1, q2, horizontalDistance(q1, q2), impl_.target.point(matches[a].target),

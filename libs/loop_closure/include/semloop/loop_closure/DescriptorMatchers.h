@@ -23,7 +23,8 @@ struct RandomWalkMatcherOptions : Options
  *  A walk goes along edges, never straight back where there is another way, and is read as the sequence of its
  *  labels. Similarity of two vertices of one label: walks that both have / walks, mixed with the embeddings'
  *  similarity (clipped to [0, 1]) by embeddingWeight when both have one. The assignment of the largest sum is
- *  the matching, and that sum the score. Distances are not looked at. */
+ *  the matching, and that sum the score. Distances are not looked at. match() throws InputError when the
+ *  assignment would take minutes: beyond some 1700 x 1700 objects. */
 class RandomWalkMatcher : public GraphMatcher
 {
 	DEFINE_MRPT_OBJECT(RandomWalkMatcher, semloop)
@@ -42,7 +43,8 @@ public:
  *
  *  The descriptor of a vertex counts, for each triple of labels, the paths of two edges that begin at the
  *  vertex and read so. Similarity of two vertices of one label: the cosine of their descriptors. The
- *  assignment of the largest sum is the matching, and that sum the score. Distances are not looked at. */
+ *  assignment of the largest sum is the matching, and that sum the score. Distances are not looked at.
+ *  match() throws as RandomWalkMatcher's does. */
 class HistogramMatcher : public GraphMatcher
 {
 	DEFINE_MRPT_OBJECT(HistogramMatcher, semloop)
