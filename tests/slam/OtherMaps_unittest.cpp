@@ -5,7 +5,10 @@
 #include <mrpt/maps/COccupancyGridMap2D.h>
 #include <mrpt/maps/COccupancyGridMap3D.h>
 #include <mrpt/maps/COctoMap.h>
+#include <mrpt/maps/CSimpleMap.h>
 #include <mrpt/maps/CSimplePointsMap.h>
+#include <mrpt/obs/CObservation2DRangeScan.h>
+#include <mrpt/obs/CSensoryFrame.h>
 #include <mrpt/serialization/CArchive.h>
 #include <semloop/config/Error.h>
 #include <semloop/observations/CameraFrames.h>
@@ -13,6 +16,7 @@
 #include <semloop/slam/Configuration.h>
 #include <semloop/slam/FrameSource.h>
 #include <semloop/slam/OtherMaps.h>
+#include <semloop/slam/RunResults.h>
 
 #include <algorithm>
 #include <filesystem>
@@ -187,6 +191,57 @@ TEST(OtherMaps, AnOccupancyGridIsFreeWhereTheCameraWasAndOccupiedAtObjects)
 		EXPECT_TRUE(occupied({sphere.centre.x * to, sphere.centre.y * to, 1.2})) << sphere.id;
 	}
 	EXPECT_GE(inSlice, 3);
+}
+
+TEST(OtherMaps, AHorizontalScanIsTheNearestOfItsKeyFramesPoints)
+{
+	const Room room(0, 60);
+	writeRunResults(room.folder.path().string(), *room.slam, RunInfo(), room.timings);
+	mrpt::maps::CSimpleMap keyFrames;
+	ASSERT_TRUE(keyFrames.loadFromFile(room.folder.file("map.simplemap")));
+	ASSERT_EQ(keyFrames.size(), room.slam->keyFrames().size());
+	const Scene scene = roomScene(RunOptions().objects);
+	int rays = 0;
+	for (std::size_t i = 0; i < keyFrames.size(); ++i)
+	{
+		mrpt::poses::CPose3DPDF::Ptr pose;
+		mrpt::obs::CSensoryFrame::Ptr frame;
+		keyFrames.get(i, pose, frame);
+		const auto scan = frame->getObservationByClass<mrpt::obs::CObservation2DRangeScan>();
+		const auto points = frame->getObservationByClass<mrpt::obs::CObservation3DRangeScan>();
+		const double step = scan->aperture / double(scan->getScanSize() - 1);
+		const auto angle = [&](std::size_t ray) { return double(ray) * step - scan->aperture / 2; };
+		for (std::size_t ray = 0; ray < scan->getScanSize(); ++ray)
+		{
+			if (!scan->getScanRangeValidity(ray)) continue;
+			++rays;
+			const double range = scan->getScanRange(ray);
+			// Level: somewhere between scan_below and scan_above this direction meets something.
+			const CPose3D T_truth_scan =
+				room.T_truth_world + pose->getMeanVal() + scan->sensorPose;
+			double nearest = 1;
+			for (double z = -0.5; z <= 0.2; z += 0.01)
+				nearest = std::min(
+					nearest,
+					distanceToSurface(
+						scene, T_truth_scan.composePoint(TPoint3D(
+								   range * std::cos(angle(ray)), range * std::sin(angle(ray)), z))));
+			EXPECT_LT(nearest, 0.03) << "key frame " << i << ", ray " << ray;
+		}
+		const CPose3D T_scan_camera = (-scan->sensorPose) + points->sensorPose;
+		for (std::size_t k = 0; k < points->points3D_x.size(); ++k)
+		{
+			const auto p = T_scan_camera.composePoint(
+				TPoint3D(points->points3D_x[k], points->points3D_y[k], points->points3D_z[k]));
+			if (p.z < -0.5 || p.z > 0.2) continue;
+			const auto ray = std::lround((std::atan2(p.y, p.x) + scan->aperture / 2) / step);
+			// A tilted camera sees further to the sides than a level one.
+			if (ray < 0 || ray >= long(scan->getScanSize())) continue;
+			ASSERT_TRUE(scan->getScanRangeValidity(ray));
+			EXPECT_LE(scan->getScanRange(ray), std::hypot(p.x, p.y) + 1e-5);
+		}
+	}
+	EXPECT_GT(rays, 200);
 }
 
 TEST(OtherMaps, EveryKindThatTakesPointsOrScansIsFilledAndSaved)

@@ -9,6 +9,7 @@
 #include <semloop/slam/RunResults.h>
 
 #include <algorithm>
+#include <functional>
 #include <map>
 #include <nlohmann/json.hpp>
 #include <set>
@@ -27,15 +28,21 @@ struct Run
 	std::unique_ptr<SemanticSlam> slam;
 };
 
+/** change: what to do to each frame before. */
 std::unique_ptr<Run> mapRawlog(
-	const std::string& rawlog, const mrpt::config::CConfigFileBase& config, int framesAhead)
+	const std::string& rawlog, const mrpt::config::CConfigFileBase& config, int framesAhead,
+	const std::function<void(const SlamFrame&)>& change = [](const SlamFrame&) {})
 {
 	auto run = std::make_unique<Run>();
 	run->logger.logging_enable_console_output = false;
 	run->slam = std::make_unique<SemanticSlam>(config, run->logger, run->timings);
 	FrontEnd front = makeFrontEnd(config);
 	FrameSource source(std::make_unique<RawlogReader>(rawlog), front, framesAhead, run->timings);
-	while (auto frame = source.next()) run->slam->process(*frame);
+	while (auto frame = source.next())
+	{
+		change(*frame);
+		run->slam->process(*frame);
+	}
 	run->slam->finish();
 	return run;
 }
@@ -281,6 +288,30 @@ TEST(SemanticSlam, EveryFileOfARunIsWritten)
 	EXPECT_EQ(summary["frames_skipped"], 0);
 	EXPECT_EQ(
 		readTumTrajectory(folder.file("trajectory.tum")).size(), std::size_t(recorded.frames));
+}
+
+TEST(SemanticSlam, AnImageThatIsGoneCostsTheSimpleMapAndNothingElse)
+{
+	const TemporaryFolder folder;
+	RunOptions options;
+	options.degrees = 30;
+	const RecordedRun recorded = recordRun(folder, options);
+	const std::string name = folder.file("colour.png");
+	const auto run = mapRawlog(
+		recorded.rawlog, runConfiguration(recorded, 0), 0,
+		[&](const SlamFrame& frame)
+		{
+			if (std::filesystem::exists(name)) return;
+			ASSERT_TRUE(frame.scan->intensityImage.saveToFile(name));
+			frame.scan->intensityImage.setExternalStorage(name);
+		});
+	std::filesystem::remove(name);
+	const auto message = messageOf<InputError>(
+		[&] { writeRunResults(folder.path().string(), *run->slam, RunInfo(), run->timings); });
+	EXPECT_NE(message.find("colour.png"), std::string::npos) << message;
+	EXPECT_FALSE(std::filesystem::exists(folder.file("map.simplemap")));
+	for (const char* file : {"map.objmap", "scene.3Dscene", "loops.jsonl", "summary.json"})
+		EXPECT_FALSE(readBytes(folder.file(file)).empty()) << file;
 }
 
 TEST(SemanticSlam, ARunWithoutAFrameWritesEmptyResults)

@@ -82,7 +82,11 @@ inline mrpt::obs::CObservation3DRangeScan scanOf(const View& view, int index)
 	scan.rangeImage_setSize(depth.rows, depth.cols);
 	for (int v = 0; v < depth.rows; ++v)
 		for (int u = 0; u < depth.cols; ++u)
-			scan.rangeImage(v, u) = uint16_t(std::lround(depth.at<float>(v, u) * 1000));
+		{
+			// What 16 bits of millimetres cannot say, a sensor does not see.
+			const long millimetres = std::lround(depth.at<float>(v, u) * 1000);
+			scan.rangeImage(v, u) = millimetres <= 65535 ? uint16_t(millimetres) : uint16_t(0);
+		}
 	scan.intensityImage = mrpt::img::CImage(view.frame.color, mrpt::img::DEEP_COPY);
 	scan.cameraParams = scan.cameraParamsIntensity = view.frame.camera;
 	scan.relativePoseIntensityWRTDepth = CPose3D::FromYawPitchRoll(-M_PI / 2, 0, -M_PI / 2);

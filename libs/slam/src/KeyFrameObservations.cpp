@@ -1,10 +1,10 @@
 #include "KeyFrameObservations.h"
 
 #include <mrpt/obs/CObservation2DRangeScan.h>
-#include <mrpt/obs/T3DPointsTo2DScanParams.h>
 #include <semloop/observations/CameraFrames.h>
 #include <semloop/observations/ExternalImages.h>
 
+#include <algorithm>
 #include <cmath>
 #include <opencv2/imgcodecs.hpp>
 
@@ -17,6 +17,8 @@ using mrpt::obs::CObservation3DRangeScan;
 using mrpt::poses::CPose3D;
 
 constexpr double kMostPoints = 20000;
+/** A tilted camera's columns do not fall on one direction each: some more leave no gaps. */
+constexpr double kRaysPerColumn = 1.2;
 
 /** So that a file with it can be moved without the rawlog's folder of images. */
 CObservation3DRangeScan::Ptr withImagesInside(const CObservation3DRangeScan& original)
@@ -66,18 +68,37 @@ CPose3D levelled(const CPose3D& pose)
 	return CPose3D(pose.x(), pose.y(), pose.z(), std::atan2(m(1, 0), m(0, 0)), 0, 0);
 }
 
-/** Of each direction the nearest point between scanBelow under the camera and scanAbove over it. */
+/** Of each direction the nearest point between scanBelow under the camera and scanAbove over it.
+ *
+ *  CObservation3DRangeScan::convertTo2DScan() does the same, but keeps a table of 24 bytes a pixel for each
+ *  pose of the sensor, a hundred of them, and each of these poses is another. */
 CObservation2DRangeScan::Ptr horizontalScan(
-	CObservation3DRangeScan& scan, const CPose3D& T_level_sensor, const SlamOptions& options)
+	const CObservation3DRangeScan& points, const CPose3D& T_level_sensor,
+	const SlamOptions& options)
 {
-	scan.sensorPose = T_level_sensor;
-	mrpt::obs::T3DPointsTo2DScanParams params;
-	params.use_origin_sensor_pose = true;
-	params.z_min = -options.scanBelow;
-	params.z_max = options.scanAbove;
-	const auto result = CObservation2DRangeScan::Create();
-	scan.convertTo2DScan(*result, params);
-	return result;
+	const auto& camera = points.cameraParams;
+	const double width = double(camera.ncols);
+	const auto scan = CObservation2DRangeScan::Create();
+	scan->rightToLeft = true;
+	scan->maxRange = points.maxRange;
+	scan->aperture =
+		float(2 * std::atan(std::max(camera.cx(), width - camera.cx()) / camera.fx()));
+	scan->resizeScan(std::size_t(kRaysPerColumn * width));
+	const double step = scan->aperture / double(scan->getScanSize() - 1);
+	for (std::size_t i = 0; i < points.points3D_x.size(); ++i)
+	{
+		const auto p = T_level_sensor.composePoint(mrpt::math::TPoint3D(
+			points.points3D_x[i], points.points3D_y[i], points.points3D_z[i]));
+		if (p.z < -options.scanBelow || p.z > options.scanAbove) continue;
+		const double ray = std::round((std::atan2(p.y, p.x) + scan->aperture / 2) / step);
+		if (!(ray >= 0 && ray < double(scan->getScanSize()))) continue;
+		const auto index = std::size_t(ray);
+		const float range = float(std::hypot(p.x, p.y));
+		if (scan->getScanRangeValidity(index) && scan->getScanRange(index) <= range) continue;
+		scan->setScanRange(index, range);
+		scan->setScanRangeValidity(index, true);
+	}
+	return scan;
 }
 }  // namespace
 
@@ -112,7 +133,7 @@ KeyFrameObservations keyFrameObservations(
 	scan->points3D_idxs_x = points.points3D_idxs_x;
 	scan->points3D_idxs_y = points.points3D_idxs_y;
 
-	auto all = unprojected(*scan, maxDepth, 1);
+	const auto all = unprojected(*scan, maxDepth, 1);
 	const CPose3D T_world_level = levelled(T_world_sensor);
 	const auto horizontal = horizontalScan(all, (-T_world_level) + T_world_sensor, slam.options());
 	horizontal->timestamp = scan->timestamp;

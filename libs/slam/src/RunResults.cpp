@@ -1,7 +1,5 @@
-#include <mrpt/maps/CSimpleMap.h>
 #include <mrpt/opengl/COpenGLScene.h>
 #include <mrpt/opengl/stock_objects.h>
-#include <mrpt/poses/CPose3DPDFGaussian.h>
 #include <semloop/config/Error.h>
 #include <semloop/object_map/ObjectFiles.h>
 #include <semloop/object_map/SemanticGraph.h>
@@ -17,7 +15,7 @@
 #include <functional>
 #include <nlohmann/json.hpp>
 
-#include "KeyFrameObservations.h"
+#include "SimpleMapFile.h"
 
 namespace fs = std::filesystem;
 
@@ -48,20 +46,6 @@ void writeMeshes(const fs::path& folder, const SemanticSlam& slam)
 			(folder / objectFileName(id, slam.map().labelName(object))).string(),
 			object.volume->mesh(), object.T_world_object);
 	}
-}
-
-/** Robot poses and observations, for observations2map and friends. */
-void writeSimpleMap(const fs::path& path, const SemanticSlam& slam)
-{
-	mrpt::maps::CSimpleMap map;
-	for (const auto& key : slam.keyFrames())
-	{
-		const auto observations = keyFrameObservations(slam, key);
-		const auto pose = mrpt::poses::CPose3DPDFGaussian::Create();
-		pose->mean = observations.T_world_robot;
-		map.insert(pose, observations.frame);
-	}
-	requireWritten(map.saveToFile(path.string()), path);
 }
 
 void writeScene(const fs::path& path, const SemanticSlam& slam)
@@ -186,7 +170,7 @@ void writeRunResults(
 		 },
 		 graph, [&] { saveObjectMap((out / "map.objmap").string(), slam.map()); },
 		 [&] { writeMeshes(out / "objects", slam); },
-		 [&] { writeSimpleMap(out / "map.simplemap", slam); },
+		 [&] { saveSimpleMap((out / "map.simplemap").string(), slam); },
 		 [&] { writeScene(out / "scene.3Dscene", slam); },
 		 [&] { writeG2o((out / "pose_graph.g2o").string(), slam.poseGraph()); },
 		 [&] { writeText(out / "loops.jsonl", loopsAsJsonLines(slam.loops())); },
