@@ -217,15 +217,14 @@ TEST(OtherMaps, AHorizontalScanIsTheNearestOfItsKeyFramesPoints)
 			++rays;
 			const double range = scan->getScanRange(ray);
 			// Level: somewhere between scan_below and scan_above this direction meets something.
-			const CPose3D T_truth_scan =
-				room.T_truth_world + pose->getMeanVal() + scan->sensorPose;
+			const CPose3D T_truth_scan = room.T_truth_world + pose->getMeanVal() + scan->sensorPose;
 			double nearest = 1;
 			for (double z = -0.5; z <= 0.2; z += 0.01)
 				nearest = std::min(
-					nearest,
-					distanceToSurface(
-						scene, T_truth_scan.composePoint(TPoint3D(
-								   range * std::cos(angle(ray)), range * std::sin(angle(ray)), z))));
+					nearest, distanceToSurface(
+								 scene, T_truth_scan.composePoint(TPoint3D(
+											range * std::cos(angle(ray)),
+											range * std::sin(angle(ray)), z))));
 			EXPECT_LT(nearest, 0.03) << "key frame " << i << ", ray " << ray;
 		}
 		const CPose3D T_scan_camera = (-scan->sensorPose) + points->sensorPose;

@@ -98,7 +98,8 @@ void SemanticSlam::makeModules(const mrpt::config::CConfigFileBase& config)
 	requireSlamSections(config);
 	modules_.loadFromConfigFile(config, "modules");
 	options_.loadFromConfigFile(config, "slam");
-	keyPoseDistance_ = options_.keyPoseDistance;
+	keyFrames_ = std::make_unique<KeyFrames>(
+		options_.keyPoseDistance, options_.keyPoseAngle, std::size_t(options_.maxKeyPoses));
 	loadPlugins(modules_.plugins, modulePlace(config, "plugins"));
 
 	odometry_ = makeConfigured<Odometry>(config, modules_.odometry, "odometry", "odometry");

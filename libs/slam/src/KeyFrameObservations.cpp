@@ -81,14 +81,13 @@ CObservation2DRangeScan::Ptr horizontalScan(
 	const auto scan = CObservation2DRangeScan::Create();
 	scan->rightToLeft = true;
 	scan->maxRange = points.maxRange;
-	scan->aperture =
-		float(2 * std::atan(std::max(camera.cx(), width - camera.cx()) / camera.fx()));
+	scan->aperture = float(2 * std::atan(std::max(camera.cx(), width - camera.cx()) / camera.fx()));
 	scan->resizeScan(std::size_t(kRaysPerColumn * width));
 	const double step = scan->aperture / double(scan->getScanSize() - 1);
 	for (std::size_t i = 0; i < points.points3D_x.size(); ++i)
 	{
-		const auto p = T_level_sensor.composePoint(mrpt::math::TPoint3D(
-			points.points3D_x[i], points.points3D_y[i], points.points3D_z[i]));
+		const auto p = T_level_sensor.composePoint(
+			mrpt::math::TPoint3D(points.points3D_x[i], points.points3D_y[i], points.points3D_z[i]));
 		if (p.z < -options.scanBelow || p.z > options.scanAbove) continue;
 		const double ray = std::round((std::atan2(p.y, p.x) + scan->aperture / 2) / step);
 		if (!(ray >= 0 && ray < double(scan->getScanSize()))) continue;
@@ -109,8 +108,7 @@ void cutDepth(CObservation3DRangeScan& scan, double maxDepth)
 		if (value > limit) value = 0;
 }
 
-KeyFrameObservations keyFrameObservations(
-	const SemanticSlam& slam, const SemanticSlam::KeyFrame& key)
+KeyFrameObservations keyFrameObservations(const SemanticSlam& slam, const KeyFrame& key)
 {
 	const auto scan = withImagesInside(*key.scan);
 	const auto instances = CObservationInstances::Create(*key.instances);

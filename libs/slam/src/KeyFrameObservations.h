@@ -19,8 +19,7 @@ struct KeyFrameObservations
 };
 
 /** Throws InputError when an external image of the scan cannot be read. */
-KeyFrameObservations keyFrameObservations(
-	const SemanticSlam& slam, const SemanticSlam::KeyFrame& key);
+KeyFrameObservations keyFrameObservations(const SemanticSlam& slam, const KeyFrame& key);
 
 /** Takes the depth beyond maxDepth [m] out of the image; its points stay. */
 void cutDepth(mrpt::obs::CObservation3DRangeScan& scan, double maxDepth);

@@ -67,7 +67,7 @@ void SemanticSlam::integrate(const SlamFrame& input, const OdometryEstimate& odo
 	addObservations(seen);
 	remember(instances, tracked, seen);
 	map_->markCovisible(localMap_.objects());
-	keepKeyFrame(input);
+	keyFrames_->offer({frameCount() - 1, input.scan, input.instances}, *poseGraph_);
 
 	++segmentedFrames_;
 	detections_ += instances.instances.size();
@@ -204,19 +204,6 @@ std::vector<AssociationRecord> SemanticSlam::associations() const
 		[](const auto& a, const auto& b)
 		{ return std::tie(a.frame, a.instance) < std::tie(b.frame, b.instance); });
 	return result;
-}
-
-void SemanticSlam::keepKeyFrame(const SlamFrame& input)
-{
-	if (!keyFrames_.empty() && localMap_.path() - pathAtKeyFrame_ < keyPoseDistance_) return;
-	pathAtKeyFrame_ = localMap_.path();
-	keyFrames_.push_back({frameCount() - 1, input.scan, input.instances});
-	if (keyFrames_.size() <= std::size_t(options_.maxKeyPoses)) return;
-	// However long the way, their images need no more memory than that.
-	std::vector<KeyFrame> everyOther;
-	for (std::size_t i = 0; i < keyFrames_.size(); i += 2) everyOther.push_back(keyFrames_[i]);
-	keyFrames_ = std::move(everyOther);
-	keyPoseDistance_ *= 2;
 }
 
 void SemanticSlam::maintainMap()

@@ -45,10 +45,13 @@ void SlamOptions::describe(OptionFields& f)
 		"seen, in standard deviations, is rejected; 0: no limit");
 	f.number(
 		"key_pose_distance", keyPoseDistance, 0.01, 100,
-		"path between key poses of map.simplemap [m]");
+		"a frame becomes a key pose of map.simplemap when no other is so near [m] ...");
+	f.degrees(
+		"key_pose_angle_deg", keyPoseAngle, 1, 180,
+		"... and looks into a direction so near to its own");
 	f.integer(
 		"max_key_poses", maxKeyPoses, 2, 100000,
-		"when there are more, every other one is dropped and the distance between them doubled");
+		"when there are more, every other one is dropped, and distance and angle are doubled");
 	f.number(
 		"scan_below", scanBelow, 0, 10,
 		"the horizontal scan of a key pose, for maps that take no points, is of what is so far "

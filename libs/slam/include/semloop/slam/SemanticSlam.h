@@ -10,6 +10,7 @@
 #include <semloop/pose_graph/PoseGraph.h>
 #include <semloop/slam/CameraCorrection.h>
 #include <semloop/slam/DriftPrior.h>
+#include <semloop/slam/KeyFrames.h>
 #include <semloop/slam/LocalMap.h>
 #include <semloop/slam/LoopCloser.h>
 #include <semloop/slam/LoopRecord.h>
@@ -59,14 +60,8 @@ public:
 	std::vector<AssociationRecord> associations() const;
 	Trajectory trajectory() const;  //!< optimised T_world_camera of every frame
 	const Trajectory& odometryTrajectory() const { return odometryTrajectory_; }
-	/** Frames kept for map.simplemap, with their camera node. */
-	struct KeyFrame
-	{
-		std::size_t frame = 0;
-		mrpt::obs::CObservation3DRangeScan::Ptr scan;
-		CObservationInstances::Ptr instances;
-	};
-	const std::vector<KeyFrame>& keyFrames() const { return keyFrames_; }
+	/** For map.simplemap and other maps of MRPT. */
+	const std::vector<KeyFrame>& keyFrames() const { return keyFrames_->all(); }
 	std::size_t frameCount() const { return odometryTrajectory_.size(); }
 	std::size_t segmentedFrameCount() const { return segmentedFrames_; }
 	std::size_t lostFrameCount() const { return lostFrames_; }
@@ -85,7 +80,6 @@ private:
 	void remember(
 		const CObservationInstances& instances, const std::vector<TrackedInstance>& tracked,
 		const std::vector<ObjectObservation>& seen);
-	void keepKeyFrame(const SlamFrame& input);
 	void maintainMap();
 	std::vector<MatchedObjects> matchedObjects(const LoopVerdict& verdict) const;
 	void closeLoop(mrpt::Clock::time_point time);
@@ -124,9 +118,7 @@ private:
 	std::vector<AssociationRecord> associations_;  //!< object: as first associated
 	/** Detections that had no object yet, by their track. */
 	std::map<uint64_t, std::vector<AssociationRecord>> unassociated_;
-	std::vector<KeyFrame> keyFrames_;
-	double keyPoseDistance_ = 0.0;  //!< grows when there are many
-	double pathAtKeyFrame_ = 0.0;
+	std::unique_ptr<KeyFrames> keyFrames_;
 	std::size_t segmentedFrames_ = 0;
 	std::size_t lostFrames_ = 0;
 	std::size_t detections_ = 0;

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <mrpt/core/bits_math.h>
 #include <semloop/config/Options.h>
 
 #include <string>
@@ -35,12 +36,13 @@ struct SlamOptions : Options
 	int maintainEveryFrames = 30;   //!< segmented frames between two clean-ups of the map
 	int minObservations = 5;        //!< objects seen in fewer frames are left out of the results
 	double observationSigma = 0.2;  //!< of e_oc [m]
-	double observationSigmaAngle = 0.2;  //!< of e_oc [rad]
-	double maxDriftSigmas = 4.0;         //!< of a loop closure's correction; 0: no limit
-	double keyPoseDistance = 0.3;        //!< path between two key poses of map.simplemap [m]
-	int maxKeyPoses = 300;               //!< of them; their images stay in memory
-	double scanBelow = 0.1;              //!< of their horizontal scan: so far below the camera [m]
-	double scanAbove = 0.1;              //!< and so far above it [m]
+	double observationSigmaAngle = 0.2;         //!< of e_oc [rad]
+	double maxDriftSigmas = 4.0;                //!< of a loop closure's correction; 0: no limit
+	double keyPoseDistance = 0.3;               //!< between two key poses of map.simplemap [m], or
+	double keyPoseAngle = mrpt::DEG2RAD(20.0);  //!< between their views [rad]
+	int maxKeyPoses = 300;                      //!< of them; their images stay in memory
+	double scanBelow = 0.1;  //!< of their horizontal scan: so far below the camera [m]
+	double scanAbove = 0.1;  //!< and so far above it [m]
 
 protected:
 	void describe(OptionFields& fields) override;
