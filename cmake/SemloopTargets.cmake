@@ -50,10 +50,10 @@ function(semloop_add_program name)
   set_property(GLOBAL APPEND PROPERTY SEMLOOP_PROGRAMS ${name})
 endfunction()
 
-# semloop_add_tests(FOLDER targets... [FIXTURE name]) makes bin/test-FOLDER of the *_unittest.cpp in
-# tests/FOLDER; with a fixture they wait for the test that sets it up.
+# semloop_add_tests(FOLDER targets... [FIXTURE name] [ENVIRONMENT NAME=value...]) makes bin/test-FOLDER
+# of the *_unittest.cpp in tests/FOLDER; with a fixture they wait for the test that sets it up.
 function(semloop_add_tests name)
-  cmake_parse_arguments(arg "" "FIXTURE" "" ${ARGN})
+  cmake_parse_arguments(arg "" "FIXTURE" "ENVIRONMENT" ${ARGN})
   file(GLOB sources CONFIGURE_DEPENDS ${CMAKE_CURRENT_SOURCE_DIR}/${name}/*.cpp)
   if(NOT sources)
     return()
@@ -68,6 +68,9 @@ function(semloop_add_tests name)
   set(properties TIMEOUT 600)
   if(arg_FIXTURE)
     set(properties TIMEOUT 1800 FIXTURES_REQUIRED ${arg_FIXTURE})
+  endif()
+  if(arg_ENVIRONMENT)
+    list(APPEND properties ENVIRONMENT "${arg_ENVIRONMENT}")
   endif()
   gtest_discover_tests(test-${name} TEST_PREFIX ${name}. DISCOVERY_TIMEOUT 300
     PROPERTIES ${properties})

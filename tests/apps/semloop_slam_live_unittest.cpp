@@ -12,6 +12,9 @@ using testing::Not;
 
 namespace
 {
+/** OpenNI2 unloads its driver for recordings, which leaks: LeakSanitizer finds no name to suppress. */
+const std::string kLeakyDriver = "ASAN_OPTIONS=detect_leaks=0 ";
+
 /** semloop-slam --live with the virtual camera, which plays a short recording at ten frames a second. */
 class SemloopSlamLive : public SemloopSlamFixture
 {
@@ -150,11 +153,11 @@ TEST_F(SemloopSlamLive, AStallIsReportedAndRecoveredFrom)
 TEST_F(SemloopSlamLive, PlaysARecordingOfOpenNI2ToItsEnd)
 {
 	const auto recorder = shell(
-		virtualCamera(recorded_.rawlog, {{"RATE", "10"}}) +
+		virtualCamera(recorded_.rawlog, {{"RATE", "10"}}) + kLeakyDriver +
 			"timeout 60 '" SEMLOOP_BINARY_DIR "/openni2/oni-recorder' record recorded.oni",
 		folder_.path());
 	ASSERT_EQ(recorder.code, 0) << recorder.err;
-	const auto result = live("", {}, "--live recording");
+	const auto result = live("", {}, "--live recording", kLeakyDriver + "timeout 60");
 	EXPECT_EQ(result.code, 0) << result.err;
 	const auto json = summary();
 	EXPECT_EQ(json["ended_by"], "end of the recording");
