@@ -1,5 +1,4 @@
 #include <benchmark/benchmark.h>
-#include <semloop/loop_closure/GeometricVerification.h>
 #include <semloop/loop_closure/ObjectAligner.h>
 #include <semloop/loop_closure/PlaceSearch.h>
 #include <semloop/loop_closure/SpectralMatcher.h>
@@ -188,20 +187,6 @@ void spectralMatchOfRun(benchmark::State& state, const std::string& file)
 	state.counters["query_objects"] = sizes / double(queries.size());
 	state.counters["sparsity"] = sparsities / double(queries.size());
 }
-
-/** Arguments: query objects, target objects, labels. */
-void verification(benchmark::State& state)
-{
-	const auto target = randomMap(state.range(1), static_cast<int>(state.range(2)), 1);
-	const auto query = localMap(target, state.range(0), 2);
-	const auto matches = SpectralMatcher().match(query, target).matches;
-	for (auto _ : state) benchmark::DoNotOptimize(verifyGeometry(query, target, matches));
-}
-BENCHMARK(verification)
-	->Args({15, 60, 10})
-	->Args({15, 200, 15})
-	->Args({100, 100, 20})
-	->Unit(benchmark::kMillisecond);
 
 /** The upper halves of eight ellipsoids with a point a centimetre, 20 000 in all. */
 std::vector<SurfacePair> ellipsoids()

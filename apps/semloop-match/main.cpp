@@ -76,7 +76,7 @@ int run(int argc, char** argv)
 	std::string names;
 	for (const auto& name : PlaceRecognizer::matcherNames())
 		names += (names.empty() ? "" : ", ") + name;
-	Text matcher("", "matcher", "One of " + names + ".", false, "pairwise", "NAME", line);
+	Text matcher("", "matcher", "One of " + names + ", or the class name of another graph matcher.", false, "pairwise", "NAME", line);
 	Text sigma(
 		"", "prior-sigma",
 		"Standard deviations of the prior [m, m, rad]; 0.8 0.1 0.1 unless given.", false, "",
@@ -91,7 +91,7 @@ int run(int argc, char** argv)
 
 	PlaceRecognizerOptions options;
 	options.matcher = matcher.getValue();
-	const PlaceRecognizer recognizer(options);
+	const PlaceRecognizer recognizer(options, "--matcher");
 	if (batch.isSet())
 	{
 		if (!graphs.getValue().empty() || prior.isSet())

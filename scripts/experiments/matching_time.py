@@ -102,7 +102,7 @@ def main():
         "*Match*: an object and the nearest seen with it, twelve in all, against the whole map; mean "
         "over all objects. "
         "*Loop detection* is a whole attempt in the run itself, wall time with other runs beside it: "
-        "matching, geometric verification and, where these succeed, the alignment of the surfaces.",
+        "recognition of the place and, where it succeeds, the alignment of the surfaces.",
         common.table(["scene", "match [ms]", "sparsity of S", "objects of the query",
                       "objects of the map", "loop detection, median [ms]", "95 % [ms]"],
                      [scene_row(scene, group, cases) for scene, group in groups.items()]),

@@ -113,7 +113,7 @@ TEST_F(SemloopMatch, EveryMatcherIsThereByName)
 		EXPECT_EQ(
 			runJson(std::string("desk.json room.json --matcher ") + name)["decision"], "accepted")
 			<< name;
-	expectError("desk.json room.json --matcher magic", 2, {"'magic'", "spectral-verified"});
+	expectError("desk.json room.json --matcher magic", 2, {"--matcher = magic", "spectral-verified"});
 }
 
 TEST_F(SemloopMatch, APriorSpeaksForAPlaceOrAgainstIt)

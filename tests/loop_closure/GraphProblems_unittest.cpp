@@ -1,7 +1,5 @@
 #include <gtest/gtest.h>
-#include <semloop/loop_closure/GeometricVerification.h>
 #include <semloop/loop_closure/PlaceRecognizer.h>
-#include <semloop/loop_closure/SpectralMatcher.h>
 
 #include <cmath>
 #include <cstdlib>
@@ -49,25 +47,6 @@ TEST_F(GraphProblems, AllFilesLoad)
 		++graphs;
 	}
 	EXPECT_GT(graphs, 480);
-}
-
-/** Queries 0 and 2 of each world are of the map, 1 and 3 of another building. */
-TEST_F(GraphProblems, MildQueriesAreConfirmedAndForeignOnesRefuted)
-{
-	for (int world = 0; world < 10; ++world)
-	{
-		const auto target = load("mild/target_" + std::to_string(world) + ".json");
-		for (int k = 0; k < 4; ++k)
-		{
-			const std::string name =
-				"mild/query_" + std::to_string(world) + "_" + std::to_string(k) + ".json";
-			const auto query = load(name);
-			const auto matches = SpectralMatcher().match(query, target).matches;
-			const auto result = verifyGeometry(query, target, matches);
-			EXPECT_EQ(result.outcome == GeometricVerification::Outcome::Confirmed, k % 2 == 0)
-				<< name << ": " << result.reason;
-		}
-	}
 }
 
 /** The answers to all problems of a kind, with and without the prior. */

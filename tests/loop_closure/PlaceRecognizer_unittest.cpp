@@ -3,7 +3,8 @@
 #include <semloop/config/Error.h>
 #include <semloop/loop_closure/PlaceRecognizer.h>
 
-#include <numeric>
+#include <cmath>
+#include <random>
 
 #include "GraphFixtures.h"
 #include "TemporaryFolder.h"
@@ -101,6 +102,114 @@ TEST(PlaceRecognizer, ADeskThatStandsTwiceIsAmbiguousUntilAPriorTells)
 	EXPECT_LT(verdict.T_target_query.distanceTo(away), 1e-3);
 }
 
+TEST(PlaceRecognizer, AnObjectThatWasMovedIsNoMatch)
+{
+	const auto query = randomRoom(8, 8, 1);
+	const auto T = yawPose(0.5, 0.4, 0, 0.3);
+	auto target = moved(query, T);
+	target.vertices[5].position += mrpt::math::TPoint3D(2, 0, 0);
+	const auto verdict = recognized(query, target);
+	EXPECT_EQ(verdict.decision, Decision::Accepted) << verdict.reason;
+	EXPECT_EQ(verdict.matches.size(), 7u);
+	for (const auto& match : verdict.matches) EXPECT_NE(match.first, query.vertices[5].id);
+	EXPECT_LT(verdict.T_target_query.distanceTo(T), 1e-4);
+	EXPECT_NEAR(verdict.centreRmse, 0, 1e-4);
+}
+
+TEST(PlaceRecognizer, AMirroredOrInvertedRoomIsAnotherRoom)
+{
+	// All distances are those of the original: only a motion that keeps gravity can tell.
+	for (unsigned seed = 0; seed < 20; ++seed)
+	{
+		const auto query = randomRoom(10, 10, seed);
+		auto mirrored = query, inverted = query;
+		for (auto& v : mirrored.vertices) v.position.x = -v.position.x;
+		for (auto& v : inverted.vertices) v.position = {v.position.x, -v.position.y, -v.position.z};
+		for (const auto& target : {mirrored, inverted})
+		{
+			const auto verdict = recognized(query, target);
+			EXPECT_NE(verdict.decision, Decision::Accepted) << seed << ": " << verdict.reason;
+		}
+	}
+}
+
+TEST(PlaceRecognizer, AWallIsItsOwnMirrorImageAndStillAPlace)
+{
+	const auto wall = complete(
+		{vertex(0, "lamp", 0, 0, 1.2), vertex(1, "monitor", 0.7, 0, 0.9),
+		 vertex(2, "monitor", 1.4, 0, 0.9), vertex(3, "printer", 2.5, 0, 0.8)});
+	const auto T = yawPose(1, 2, 0, 1);
+	const auto verdict = recognized(wall, moved(wall, T));
+	EXPECT_EQ(verdict.decision, Decision::Accepted) << verdict.reason;
+	EXPECT_LT(verdict.T_target_query.distanceTo(T), 1e-4);
+}
+
+TEST(PlaceRecognizer, ATurnOfASymmetricPlaceIsARival)
+{
+	// Four chairs round a table: each quarter turn fits.
+	const auto scene = complete(
+		{vertex(0, "chair", 1, 0, 0.5), vertex(1, "chair", 0, 1, 0.5),
+		 vertex(2, "chair", -1, 0, 0.5), vertex(3, "chair", 0, -1, 0.5),
+		 vertex(4, "table", 0, 0, 0.7)});
+	const auto verdict = recognized(scene, scene);
+	EXPECT_EQ(verdict.decision, Decision::Ambiguous) << verdict.reason;
+	EXPECT_NEAR(verdict.runnerUp, 1, 1e-6);
+	// Which of the four, odometry can tell.
+	const auto known = recognized(scene, scene, "pairwise", PosePrior{});
+	EXPECT_EQ(known.decision, Decision::Accepted) << known.reason;
+	EXPECT_NEAR(known.T_target_query.yaw(), 0, 1e-6);
+}
+
+TEST(PlaceRecognizer, EmbeddingsTellARepeatedDesk)
+{
+	auto desk = randomRoom(8, 8, 1);
+	auto copy = moved(desk, yawPose(10, 0, 0, M_PI));
+	for (auto& v : desk.vertices) v.embeddings = {{1, 0}};
+	for (auto& v : copy.vertices) v.embeddings = {{0, 1}};
+	const auto verdict = recognized(desk, united(desk, copy));
+	EXPECT_EQ(verdict.decision, Decision::Accepted) << verdict.reason;
+	EXPECT_LT(verdict.T_target_query.distanceTo(yawPose(0, 0, 0, 0)), 1e-4);
+}
+
+TEST(PlaceRecognizer, NoisyCentresGiveThePoseOfTheirMean)
+{
+	std::mt19937 random(7);
+	std::normal_distribution<double> noise(0, 0.05);
+	const auto room = randomRoom(12, 5, 9);
+	const auto T = yawPose(-2, 1, 0.1, 0.9);
+	auto target = moved(room, T);
+	for (auto& v : target.vertices)
+		v.position += mrpt::math::TPoint3D(noise(random), noise(random), noise(random));
+	const auto verdict = recognized(room, target);
+	ASSERT_EQ(verdict.decision, Decision::Accepted) << verdict.reason;
+	// Three sigma of the mean of 12 centres; the room is about 2 m in radius.
+	const mrpt::math::TPoint3D middle(2.5, 2, 1);
+	EXPECT_LT((verdict.T_target_query.composePoint(middle) - T.composePoint(middle)).norm(), 0.08);
+	EXPECT_NEAR(verdict.T_target_query.yaw(), T.yaw(), 0.04);
+	EXPECT_NEAR(verdict.centreRmse, 0.05 * std::sqrt(3.0), 0.04);
+}
+
+TEST(PlaceRecognizer, WhereTheQueryBelievesToBeChangesNothing)
+{
+	const auto room = randomRoom(10, 4, 9);
+	const auto a = recognized(room, room);
+	const auto b = recognized(moved(room, yawPose(5, 6, 7, 2)), room);
+	EXPECT_EQ(a.decision, b.decision);
+	EXPECT_EQ(a.matches, b.matches);
+	EXPECT_NEAR(a.evidence, b.evidence, 0.01);
+	EXPECT_NEAR(a.probability, b.probability, 1e-3);
+}
+
+TEST(PlaceRecognizer, AStackLeavesTheYawOpen)
+{
+	const auto stack = complete(
+		{vertex(0, "a", 1, 1, 0), vertex(1, "b", 1, 1, 0.4), vertex(2, "c", 1, 1, 0.8),
+		 vertex(3, "d", 1, 1, 1.2)});
+	const auto verdict = recognized(stack, stack);
+	EXPECT_EQ(verdict.decision, Decision::Rejected);
+	EXPECT_EQ(verdict.reason, "no two of the 4 objects are in the map at their distance");
+}
+
 TEST(PlaceRecognizer, APlaceFarFromThePriorIsNotAccepted)
 {
 	const auto desk = fourObjects();
@@ -143,14 +252,26 @@ TEST(PlaceRecognizer, ThePublishedMatcherTakesHalfOfTheEdgesForALoop)
 	EXPECT_EQ(recognized(query, target).decision, Decision::Accepted);
 }
 
+TEST(PlaceRecognizer, AMatcherByItsClassNameProposesPlaces)
+{
+	const auto query = randomRoom(10, 8, 2);
+	const auto target = moved(query, yawPose(0.4, -0.3, 0.1, 0.2));
+	const auto named = recognized(query, target, "semloop::CliqueMatcher");
+	const auto known = recognized(query, target, "clique");
+	EXPECT_EQ(named.decision, Decision::Accepted);
+	EXPECT_EQ(named.reason, known.reason);
+	EXPECT_EQ(named.candidates.size(), 10u);
+}
+
 TEST(PlaceRecognizer, AnUnknownMatcherIsWrongUsage)
 {
 	PlaceRecognizerOptions options;
 	options.matcher = "magic";
 	EXPECT_THAT(
-		messageOf<UsageError>([&] { PlaceRecognizer recognizer(options); }),
+		messageOf<UsageError>([&] { PlaceRecognizer recognizer(options, "a.ini: [b] matcher"); }),
 		testing::AllOf(
-			HasSubstr("'magic'"),
+			testing::StartsWith("a.ini: [b] matcher = magic: not a registered "),
+			HasSubstr("semloop::CliqueMatcher"),
 			HasSubstr("pairwise, spectral-verified, clique, random-walk, histogram, spectral")));
 }
 }  // namespace

@@ -18,70 +18,25 @@ using Decision = LoopVerdict::Decision;
 
 const std::string kSection = "loop_detection";
 
-TEST(SemanticLoopDetector, AcceptsADriftedCopy)
-{
-	const auto target = randomRoom(10, 5, 1);
-	const auto T = yawPose(0.4, -0.3, 0.05, 0.1);
-	const auto verdict =
-		SemanticLoopDetector().detect(moved(target, yawPose(0, 0, 0, 0) - T), target);
-	EXPECT_EQ(verdict.decision, Decision::Accepted) << verdict.reason;
-	EXPECT_LT(verdict.T_target_query.distanceTo(T), 1e-6);
-	EXPECT_EQ(verdict.queryObjects, 10);
-	EXPECT_EQ(verdict.candidates.size(), 10);
-	EXPECT_EQ(verdict.matches.size(), 10);
-	for (const auto& [query, targetId] : verdict.matches) EXPECT_EQ(query, targetId);
-	EXPECT_DOUBLE_EQ(verdict.matchedEdgeShare, 1);
-	EXPECT_GT(verdict.matchingScore, 10);
-	EXPECT_NEAR(verdict.centreRmse, 0, 1e-6);
-	EXPECT_THAT(verdict.reason, HasSubstr("10 of 10 objects"));
-}
-
-TEST(SemanticLoopDetector, EmptyGraphsAreRejected)
-{
-	const auto four = fourObjects();
-	EXPECT_EQ(
-		SemanticLoopDetector().detect({}, four).reason, "0 objects against 4: nothing to match");
-	const auto verdict = SemanticLoopDetector().detect(four, SemanticGraph{});
-	EXPECT_EQ(verdict.decision, Decision::Rejected);
-	EXPECT_EQ(verdict.reason, "4 objects against 0: nothing to match");
-}
-
-TEST(SemanticLoopDetector, NeedsHalfOfTheEdges)
-{
-	// Two of four vertices remain: one of six edges.
-	const auto query = fourObjects();
-	auto target = query;
-	target.vertices[2].label = target.vertices[3].label = "other";
-	const auto verdict = SemanticLoopDetector().detect(query, target);
-	EXPECT_EQ(verdict.decision, Decision::Rejected);
-	EXPECT_EQ(verdict.reason, "only 17 % of the 6 edges matched, needed are 50 %");
-	EXPECT_NEAR(verdict.matchedEdgeShare, 1.0 / 6, 1e-9);
-}
-
-TEST(SemanticLoopDetector, ARepeatedDeskIsAmbiguousHoweverFarTheOtherIs)
-{
-	const auto desk = randomRoom(8, 8, 1);
-	const auto target = united(desk, moved(desk, yawPose(10, 0, 0, M_PI)));
-	SemanticLoopDetector detector;
-	const auto verdict = detector.detect(desk, target);
-	EXPECT_EQ(verdict.decision, Decision::Ambiguous) << verdict.reason;
-	EXPECT_DOUBLE_EQ(verdict.runnerUp, 1);
-}
-
 TEST(SemanticLoopDetector, ReadsTheSectionsOfAllItsParts)
 {
 	mrpt::config::CConfigFileMemory config;
-	config.write(kSection, "matcher", std::string("semloop::SpectralMatcher"));
-	config.write(kSection, "min_edge_share", 0.25);
-	config.write(kSection, "min_inliers", 7);
+	config.write(kSection, "matcher", std::string("spectral-verified"));
+	config.write(kSection, "max_vertical_error", 0.125);
+	config.write(kSection, "min_matches", 7);
+	config.write(kSection, "rival_distance", 0.5);
 	config.write("graph_matching", "mu", 3.0);
 	config.write("alignment", "min_fitness", 0.125);
 	SemanticLoopDetector detector;
 	detector.configure(config, kSection);
-	EXPECT_EQ(detector.options.minEdgeShare, 0.25);
-	EXPECT_EQ(detector.options.verification.minInliers, 7);
+	EXPECT_EQ(detector.options.maxVerticalError, 0.125);
+	EXPECT_EQ(detector.options.recognition.minMatches, 7);
+	EXPECT_EQ(detector.options.recognition.search.rivalDistance, 0.5);
 	EXPECT_EQ(detector.aligner.options.minFitness, 0.125);
 
+	config.write(kSection, "min_sigma", 2.0);
+	EXPECT_THROW(detector.configure(config, kSection), UsageError);
+	config.write(kSection, "min_sigma", 0.03);
 	config.write("graph_matching", "nu", 3.0);
 	EXPECT_THROW(detector.configure(config, kSection), UsageError);
 }
@@ -102,6 +57,7 @@ TEST(SemanticLoopDetector, AnUnregisteredMatcherIsAnErrorThatListsTheRegisteredO
 		{
 			EXPECT_THAT(error.what(), HasSubstr("[loop_detection] matcher = " + name));
 			EXPECT_THAT(error.what(), HasSubstr("semloop::SpectralMatcher"));
+			EXPECT_THAT(error.what(), HasSubstr("pairwise"));
 		}
 	}
 }
@@ -180,7 +136,7 @@ protected:
 
 TEST_F(SemanticLoopDetectorOnAMap, CorrectsTheDriftToAFractionOfAVoxel)
 {
-	const auto verdict = makeDetector().detect(map, query, target);
+	const auto verdict = makeDetector().detect(map, query, target, {});
 	ASSERT_EQ(verdict.decision, Decision::Accepted) << verdict.reason;
 	EXPECT_EQ(verdict.matches.size(), kObjects);
 	const auto corrected = verdict.T_target_query + drift;
@@ -203,7 +159,7 @@ TEST_F(SemanticLoopDetectorOnAMap, AnObjectThatTheSurfacesOfTheOthersRefuteIsNoM
 {
 	// A pose of the centres spreads the 0.45 m over all, within the gates; the other four surfaces fit exactly.
 	const auto moved = mapScene(drift, 0.45);
-	const auto verdict = makeDetector().detect(map, moved, target);
+	const auto verdict = makeDetector().detect(map, moved, target, {});
 	ASSERT_EQ(verdict.decision, Decision::Accepted) << verdict.reason;
 	EXPECT_EQ(verdict.candidates.size(), kObjects);
 	ASSERT_EQ(verdict.matches.size(), kObjects - 1U);
@@ -212,11 +168,21 @@ TEST_F(SemanticLoopDetectorOnAMap, AnObjectThatTheSurfacesOfTheOthersRefuteIsNoM
 	EXPECT_LT((verdict.T_target_query + drift).translation().norm(), 0.02);
 }
 
+TEST_F(SemanticLoopDetectorOnAMap, APriorThatRulesTheCorrectionOutIsBelieved)
+{
+	EXPECT_EQ(makeDetector().detect(map, query, target, PosePrior{}).decision, Decision::Accepted);
+	PosePrior prior;
+	prior.sigmaXY = prior.sigmaZ = prior.sigmaYaw = 0.08;
+	const auto verdict = makeDetector().detect(map, query, target, prior);
+	EXPECT_EQ(verdict.decision, Decision::Rejected);
+	EXPECT_THAT(verdict.reason, HasSubstr("standard deviations from the prior"));
+}
+
 TEST_F(SemanticLoopDetectorOnAMap, RejectsWhenTheSurfacesDoNotAlign)
 {
 	SemanticLoopDetector detector = makeDetector();
 	detector.aligner.options.maxRmse = 1e-4;
-	const auto verdict = detector.detect(map, query, target);
+	const auto verdict = detector.detect(map, query, target, {});
 	EXPECT_EQ(verdict.decision, Decision::Rejected);
 	EXPECT_THAT(verdict.reason, HasSubstr("; but surfaces align to"));
 }
@@ -225,17 +191,20 @@ TEST_F(SemanticLoopDetectorOnAMap, LeavesOutObjectsThatWereSeenTooSeldom)
 {
 	SemanticLoopDetector detector;
 	detector.options.minObservations = 4;
-	EXPECT_EQ(detector.detect(map, query, target).reason, "0 objects against 0: nothing to match");
+	EXPECT_EQ(
+		detector.detect(map, query, target, {}).reason,
+		"0 objects against 0: a place needs two on either side");
 }
 
 TEST_F(SemanticLoopDetectorOnAMap, AMatcherThatCannotTakeTheGraphIsARejection)
 {
 	mrpt::config::CConfigFileMemory config;
 	config.write("graph_matching", "max_entries", 1);
+	config.write(kSection, "matcher", std::string("spectral-verified"));
 	config.write(kSection, "min_observations", 3);
 	SemanticLoopDetector detector;
 	detector.configure(config, kSection);
-	const auto verdict = detector.detect(map, query, target);
+	const auto verdict = detector.detect(map, query, target, {});
 	EXPECT_EQ(verdict.decision, Decision::Rejected);
 	EXPECT_EQ(verdict.queryObjects, kObjects);
 	EXPECT_THAT(verdict.reason, HasSubstr("max_entries"));

@@ -76,6 +76,22 @@ TEST(DriftPrior, JudgesByTheMotionOfThePointAndNotOfTheWorldsOrigin)
 	EXPECT_NEAR(exact.sigmas(0, 1, CPose3D(1, 0, 0, 0, 0, 0), about, {10, 0, 0}), 1, 1e-6);
 }
 
+TEST(DriftPrior, TellsALoopDetectorItsStandardDeviations)
+{
+	const CPose3D here(4, 0, 0, 0, 0, 0);
+	// Four steps of 0.2 m make 0.4 m, with the 0.3 m of the loop closure 0.5 m.
+	const PosePrior drifting = straightAhead(5, 0.04, 0).prior(0, 4, here, {5, 1, 0});
+	EXPECT_EQ(drifting.T_target_query, CPose3D());
+	EXPECT_NEAR(drifting.sigmaXY, 0.5, 1e-9);
+	EXPECT_NEAR(drifting.sigmaZ, 0.5, 1e-9);
+	EXPECT_NEAR(drifting.sigmaYaw, 0.15, 1e-9);
+	// Sideways 0.14 m^2 as above, along the path nothing: the larger counts.
+	const PosePrior turning = straightAhead(5, 0, 0.01).prior(0, 4, here, {4, 0, 0});
+	EXPECT_NEAR(turning.sigmaXY, std::sqrt(0.14 + 0.09), 1e-9);
+	EXPECT_NEAR(turning.sigmaZ, std::sqrt(0.14 + 0.09), 1e-9);
+	EXPECT_NEAR(turning.sigmaYaw, 0.25, 1e-9);
+}
+
 TEST(DriftPrior, DoesNotDependOnWhereTheCameraLooks)
 {
 	const DriftPrior prior = straightAhead(4, 0.02, 0.0);

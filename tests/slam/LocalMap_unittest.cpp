@@ -51,6 +51,29 @@ TEST(LocalMap, IsOfTheFramesOfItsLengthOfPath)
 	EXPECT_EQ(map.firstFrame(), 1u);
 }
 
+TEST(LocalMap, ForgetsNothingForAWhileWhenItIsAskedTo)
+{
+	LocalMap map = twoMetreMap();  // and two metres of growth
+	map.see(7);
+	for (int i = 0; i < 2; ++i) map.advance(oneMetre);
+	map.keepGrowing(true);
+	for (int i = 0; i < 2; ++i)
+	{
+		map.advance(oneMetre);
+		map.keepGrowing(true);
+		EXPECT_TRUE(map.contains(7));
+		EXPECT_EQ(map.firstFrame(), 0u);
+	}
+	map.advance(CPose3D(0.01, 0, 0, 0, 0, 0));
+	EXPECT_FALSE(map.contains(7)) << "more than four metres";
+
+	map.see(8);
+	map.advance(CPose3D(3, 0, 0, 0, 0, 0));
+	EXPECT_TRUE(map.contains(8));
+	map.keepGrowing(false);
+	EXPECT_FALSE(map.contains(8));
+}
+
 TEST(LocalMap, AnObjectThatStaysInViewStays)
 {
 	LocalMap map = twoMetreMap();

@@ -221,33 +221,18 @@ double PlaceEvidence::radius() const
 /** Least squares over the matches, those that the wide distribution explains weighing less. */
 std::optional<YawPose> PlaceEvidence::fit(double sigma) const
 {
-	if (matched_.size() < 2) return {};
-	std::vector<double> weights;
-	mrpt::math::TPoint3D meanQ, meanT;
-	double sum = 0;
+	std::vector<WeightedPair> pairs;
+	pairs.reserve(matched_.size());
 	for (const std::size_t i : matched_)
 	{
 		const double d = pairs_[i].squaredDistance / (sigma * sigma);
 		const double wide = options_.badCentreShare / 27 * std::exp(-0.5 * d / kWide);
 		const double all = kernel(pairs_[i].squaredDistance, sigma, options_.badCentreShare);
-		const double weight = (all - wide + wide / kWide) / all;
-		weights.push_back(weight);
-		meanQ += candidates_.point(pairs_[i].query) * weight;
-		meanT += pairs_[i].point * weight;
-		sum += weight;
+		pairs.push_back(
+			{candidates_.point(pairs_[i].query), pairs_[i].point,
+			 (all - wide + wide / kWide) / all});
 	}
-	meanQ *= 1 / sum;
-	meanT *= 1 / sum;
-	double c = 0, s = 0;
-	for (std::size_t n = 0; n < matched_.size(); ++n)
-	{
-		const Pair& pair = pairs_[matched_[n]];
-		const auto a = candidates_.point(pair.query) - meanQ, b = pair.point - meanT;
-		c += weights[n] * (a.x * b.x + a.y * b.y);
-		s += weights[n] * (a.x * b.y - a.y * b.x);
-	}
-	if (std::hypot(c, s) < 1e-9) return {};
-	return YawPose::about(meanQ, meanT, c, s);
+	return fitYawPose(pairs);
 }
 
 std::vector<Match> PlaceEvidence::matches() const

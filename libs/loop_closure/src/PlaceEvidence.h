@@ -1,12 +1,12 @@
 #pragma once
 
 #include <semloop/loop_closure/PlaceSearch.h>
+#include <semloop/loop_closure/YawPose.h>
 
 #include <optional>
 #include <vector>
 
 #include "MatchCandidates.h"
-#include "YawPose.h"
 
 namespace semloop
 {

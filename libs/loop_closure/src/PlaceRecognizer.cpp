@@ -1,12 +1,11 @@
 #include <mrpt/core/format.h>
 #include <semloop/config/Error.h>
-#include <semloop/loop_closure/CliqueMatcher.h>
-#include <semloop/loop_closure/DescriptorMatchers.h>
-#include <semloop/loop_closure/GeometricVerification.h>
+#include <semloop/config/ModuleFactory.h>
 #include <semloop/loop_closure/PlaceRecognizer.h>
-#include <semloop/loop_closure/SpectralMatcher.h>
+#include <semloop/loop_closure/YawPose.h>
 
 #include <algorithm>
+#include <cmath>
 
 namespace semloop
 {
@@ -14,7 +13,19 @@ namespace
 {
 using Decision = LoopVerdict::Decision;
 
+struct NamedMatcher
+{
+	const char *name, *className;
+};
+// None, or the class of a GraphMatcher.
 constexpr const char *kPairwise = "pairwise", *kPublished = "spectral";
+constexpr NamedMatcher kMatchers[] = {
+	{kPairwise, nullptr},
+	{"spectral-verified", "semloop::SpectralMatcher"},
+	{"clique", "semloop::CliqueMatcher"},
+	{"random-walk", "semloop::RandomWalkMatcher"},
+	{"histogram", "semloop::HistogramMatcher"},
+	{kPublished, "semloop::SpectralMatcher"}};
 // Sec. IV-B
 constexpr double kPublishedEdgeShare = 0.5;
 constexpr double kEdgeLengthTolerance = 0.5;  // [m]
@@ -25,6 +36,19 @@ void addMatches(
 {
 	for (const auto& [j, k] : matches)
 		ids.emplace_back(query.vertices[j].id, target.vertices[k].id);
+}
+
+/** Of the matched centres [m]. */
+double rmseOf(
+	const SemanticGraph& query, const SemanticGraph& target, const std::vector<Match>& matches,
+	const mrpt::poses::CPose3D& T_target_query)
+{
+	double sum = 0;
+	for (const auto& [j, k] : matches)
+		sum +=
+			(T_target_query.composePoint(query.vertices[j].position) - target.vertices[k].position)
+				.sqrNorm();
+	return std::sqrt(sum / double(std::max<std::size_t>(1, matches.size())));
 }
 
 /** Those that are not this one. */
@@ -44,7 +68,11 @@ std::vector<Place> rivalsOf(
 
 void PlaceRecognizerOptions::describe(OptionFields& fields)
 {
-	fields.choice("matcher", matcher, PlaceRecognizer::matcherNames(), "what proposes places");
+	std::string names;
+	for (const auto& known : kMatchers) names += std::string(known.name) + ", ";
+	fields.text(
+		"matcher", matcher,
+		"what proposes places: " + names + "or the class name of another graph matcher");
 	fields.number("min_probability", minProbability, 0.5, 1, "of an accepted place to be right");
 	fields.integer("min_matches", minMatches, 2, 1000, "objects that an accepted place has");
 	fields.degrees(
@@ -56,28 +84,45 @@ void PlaceRecognizerOptions::describe(OptionFields& fields)
 	search.describe(fields);
 }
 
-std::vector<std::string> PlaceRecognizer::matcherNames()
+void PlaceRecognizerOptions::requireConsistent() const
 {
-	return {kPairwise, "spectral-verified", "clique", "random-walk", "histogram", kPublished};
+	search.requireConsistent();
 }
 
-PlaceRecognizer::PlaceRecognizer(const PlaceRecognizerOptions& options) : options_(options)
+std::vector<std::string> PlaceRecognizer::matcherNames()
 {
-	const auto names = matcherNames();
-	if (std::find(names.begin(), names.end(), options.matcher) == names.end())
+	std::vector<std::string> names;
+	for (const auto& matcher : kMatchers) names.push_back(matcher.name);
+	return names;
+}
+
+PlaceRecognizer::PlaceRecognizer(const PlaceRecognizerOptions& options, const std::string& key)
+	: options_(options)
+{
+	std::string names;
+	for (const auto& matcher : kMatchers)
 	{
-		std::string list;
-		for (const auto& name : names) list += (list.empty() ? "" : ", ") + name;
-		throw UsageError("matcher '" + options.matcher + "' is not known; use one of " + list);
+		if (options.matcher == matcher.name)
+		{
+			if (matcher.className) matcher_ = makeModule<GraphMatcher>(matcher.className, key);
+			return;
+		}
+		names += (names.empty() ? "" : ", ") + std::string(matcher.name);
 	}
-	if (options.matcher == "clique")
-		matcher_ = CliqueMatcher::Create();
-	else if (options.matcher == "random-walk")
-		matcher_ = RandomWalkMatcher::Create();
-	else if (options.matcher == "histogram")
-		matcher_ = HistogramMatcher::Create();
-	else if (options.matcher != kPairwise)
-		matcher_ = SpectralMatcher::Create();
+	try
+	{
+		matcher_ = makeModule<GraphMatcher>(options.matcher, key);
+	}
+	catch (const UsageError& error)
+	{
+		throw UsageError(error.what() + ("; or use one of " + names));
+	}
+}
+
+void PlaceRecognizer::configureMatcher(
+	const mrpt::config::CConfigFileBase& config, const std::string& section)
+{
+	if (matcher_) matcher_->configure(config, section);
 }
 
 LoopVerdict PlaceRecognizer::publishedVerdict(
@@ -91,17 +136,21 @@ LoopVerdict PlaceRecognizer::publishedVerdict(
 	verdict.matchingScore = matching.score;
 	verdict.matchedEdgeShare =
 		matchedEdgeShare(query, target, matching.matches, kEdgeLengthTolerance);
-	std::vector<std::pair<mrpt::math::TPoint3D, mrpt::math::TPoint3D>> pairs;
+	std::vector<WeightedPair> pairs;
 	for (const auto& [j, k] : matching.matches)
-		pairs.emplace_back(query.vertices[j].position, target.vertices[k].position);
-	const auto pose = fitYawAndTranslation(pairs);
+		pairs.push_back({query.vertices[j].position, target.vertices[k].position});
+	const auto pose = fitYawPose(pairs);
 	verdict.hasPose = pose.has_value();
-	if (pose) verdict.T_target_query = *pose;
+	if (pose)
+	{
+		verdict.T_target_query = pose->toPose3D();
+		verdict.centreRmse = rmseOf(query, target, matching.matches, verdict.T_target_query);
+	}
 	verdict.reason = mrpt::format(
 		"%.0f %% of the %zu edges matched, needed are %.0f %%", 100 * verdict.matchedEdgeShare,
 		query.edges.size(), 100 * kPublishedEdgeShare);
-	if (pose && verdict.matchedEdgeShare >= kPublishedEdgeShare)
-		verdict.decision = Decision::Accepted;
+	verdict.graphsMatch = verdict.matchedEdgeShare >= kPublishedEdgeShare;
+	if (pose && verdict.graphsMatch) verdict.decision = Decision::Accepted;
 	return verdict;
 }
 
@@ -133,15 +182,19 @@ LoopVerdict PlaceRecognizer::recognize(
 	if (proposed.empty())
 	{
 		verdict.reason = mrpt::format(
-			"no two of the %zu objects are in the map at their distance", query.vertices.size());
+			"no two of the %zu objects are in the map at their distance%s", query.vertices.size(),
+			prior ? " and where the prior allows" : "");
 		return verdict;
 	}
 
 	const Place& best = proposed.front();
 	const auto rivals = rivalsOf(best, places.found, search, options_.search.rivalDistance);
 	addMatches(query, target, best.matches, verdict.matches);
+	if (!matcher_) verdict.candidates = verdict.matches;
 	verdict.hasPose = true;
 	verdict.T_target_query = best.T_target_query;
+	verdict.evidence = best.evidence;
+	verdict.centreRmse = rmseOf(query, target, best.matches, best.T_target_query);
 	verdict.probability = probabilityOf(best, query.vertices.size(), rivals, options_.search);
 	if (!rivals.empty() && best.evidence > 0)
 		verdict.runnerUp = std::clamp(rivals.front().evidence / best.evidence, 0.0, 1.0);
@@ -176,6 +229,7 @@ LoopVerdict PlaceRecognizer::recognize(
 		verdict.decision = Decision::Ambiguous;
 	else
 		verdict.reason += mrpt::format(", needed is %.2f", options_.minProbability);
+	verdict.graphsMatch = verdict.decision == Decision::Accepted;
 	return verdict;
 }
 

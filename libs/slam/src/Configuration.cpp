@@ -174,7 +174,8 @@ std::string configurationReference()
 	page +=
 		table("loop_detection", "of semloop::SemanticLoopDetector", SemanticLoopDetectorOptions());
 	page += table(
-		"graph_matching", "of semloop::SpectralMatcher, Eq. (4)-(6)", SpectralMatcherOptions());
+		"graph_matching", "of semloop::SpectralMatcher, when the matcher is spectral, Eq. (4)-(6)",
+		SpectralMatcherOptions());
 	page += table("alignment", "of the matched objects' surfaces", ObjectAlignerOptions());
 	page += table("pose_graph", "of semloop::CeresPoseGraph, Eq. (7)", CeresPoseGraphOptions());
 	page +=

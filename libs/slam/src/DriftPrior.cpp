@@ -2,6 +2,7 @@
 #include <semloop/slam/DriftPrior.h>
 
 #include <Eigen/Cholesky>
+#include <Eigen/Eigenvalues>
 #include <cmath>
 
 namespace semloop
@@ -37,9 +38,9 @@ Matrix6 DriftPrior::covariance(std::size_t a, std::size_t b) const
 	return P;
 }
 
-double DriftPrior::sigmas(
+Eigen::Matrix4d DriftPrior::covarianceAt(
 	std::size_t a, std::size_t b, const mrpt::poses::CPose3D& T_world_camera,
-	const mrpt::poses::CPose3D& T_target_query, const mrpt::math::TPoint3D& point) const
+	const mrpt::math::TPoint3D& point) const
 {
 	const Eigen::Matrix3d R = T_world_camera.getRotationMatrix().asEigen();
 	const auto local = T_world_camera.inverseComposePoint(point);
@@ -53,9 +54,27 @@ double DriftPrior::sigmas(
 	S.diagonal() += Eigen::Vector4d(
 		kLoopSigma * kLoopSigma, kLoopSigma * kLoopSigma, kLoopSigma * kLoopSigma,
 		kLoopSigmaAngle * kLoopSigmaAngle);
+	return S;
+}
+
+double DriftPrior::sigmas(
+	std::size_t a, std::size_t b, const mrpt::poses::CPose3D& T_world_camera,
+	const mrpt::poses::CPose3D& T_target_query, const mrpt::math::TPoint3D& point) const
+{
+	const Eigen::Matrix4d S = covarianceAt(a, b, T_world_camera, point);
 	const auto moved = T_target_query.composePoint(point) - point;
 	const Eigen::Vector4d e(moved.x, moved.y, moved.z, T_target_query.yaw());
 	return std::sqrt(e.dot(S.llt().solve(e)));
+}
+
+PosePrior DriftPrior::prior(
+	std::size_t a, std::size_t b, const mrpt::poses::CPose3D& T_world_camera,
+	const mrpt::math::TPoint3D& point) const
+{
+	const Eigen::Matrix4d S = covarianceAt(a, b, T_world_camera, point);
+	const Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> horizontal(
+		S.topLeftCorner<2, 2>(), Eigen::EigenvaluesOnly);
+	return {{}, std::sqrt(horizontal.eigenvalues()(1)), std::sqrt(S(2, 2)), std::sqrt(S(3, 3))};
 }
 
 }  // namespace semloop

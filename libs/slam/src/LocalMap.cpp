@@ -12,6 +12,9 @@ void LocalMapOptions::describe(OptionFields& f)
 	f.number(
 		"path_between_loops", pathBetweenLoops, 0, 1000,
 		"path after a loop closure before the next one is looked for [m]");
+	f.number(
+		"growth", growth, 0, 1000,
+		"how much longer objects stay while it is ambiguous where they belong [m]");
 }
 
 void LocalMap::advance(const mrpt::poses::CPose3D& T_previous_camera)
@@ -24,14 +27,28 @@ void LocalMap::advance(const mrpt::poses::CPose3D& T_previous_camera)
 bool LocalMap::contains(ObjectId id) const
 {
 	const auto it = lastSeen_.find(id);
-	return it != lastSeen_.end() && path_ - it->second <= options_.length;
+	return it != lastSeen_.end() && path_ - it->second <= length();
 }
 
 std::size_t LocalMap::firstFrame() const
 {
-	const auto isOld = [&](double path, double now) { return now - path > options_.length; };
+	const auto isOld = [&](double path, double now) { return now - path > length(); };
 	const auto first = std::lower_bound(pathAtFrame_.begin(), pathAtFrame_.end(), path_, isOld);
 	return std::size_t(first - pathAtFrame_.begin());
+}
+
+void LocalMap::keepGrowing(bool yes)
+{
+	if (!yes)
+		growingFrom_.reset();
+	else if (!growingFrom_)
+		growingFrom_ = path_;
+}
+
+double LocalMap::length() const
+{
+	if (!growingFrom_) return options_.length;
+	return options_.length + std::min(options_.growth, path_ - *growingFrom_);
 }
 
 std::set<ObjectId> LocalMap::objects() const

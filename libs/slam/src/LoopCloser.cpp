@@ -48,13 +48,14 @@ LoopCloser::LoopCloser(
 {
 }
 
-LoopVerdict LoopCloser::detect(const LocalMap& localMap) const
+LoopVerdict LoopCloser::detect(
+	const LocalMap& localMap, const std::optional<PosePrior>& prior) const
 {
 	const StageTimings::Scope timing(timings_, "loop_detection");
 	std::set<ObjectId> query, target;
 	for (const auto& [id, object] : map_->objects())
 		(localMap.contains(id) ? query : target).insert(id);
-	return detector_->detect(*map_, query, target);
+	return detector_->detect(*map_, query, target, prior);
 }
 
 OptimizationReport LoopCloser::close(

@@ -17,6 +17,7 @@ nlohmann::ordered_json toJson(const LoopRecord& record)
 	line["local_map_since"] = record.localMapSince;
 	line["decision"] = toString(v.decision);
 	line["reason"] = v.reason;
+	line["probability"] = v.probability;
 	line["matches"] = v.matches;
 	auto& matched = line["matched_objects"] = nlohmann::ordered_json::array();
 	for (const MatchedObjects& m : record.matched)
@@ -25,7 +26,7 @@ nlohmann::ordered_json toJson(const LoopRecord& record)
 			 {"target_label", m.targetLabel},
 			 {"query_centre", {m.queryCentre.x, m.queryCentre.y, m.queryCentre.z}},
 			 {"target_centre", {m.targetCentre.x, m.targetCentre.y, m.targetCentre.z}}});
-	if (v.decision == LoopVerdict::Decision::Accepted)
+	if (v.decision == LoopVerdict::Decision::Accepted || v.hasPose)
 	{
 		const auto T = v.T_target_query.getHomogeneousMatrixVal<mrpt::math::CMatrixDouble44>();
 		auto& rows = line["T_target_query"] = nlohmann::ordered_json::array();
@@ -34,11 +35,19 @@ nlohmann::ordered_json toJson(const LoopRecord& record)
 	}
 	else
 		line["T_target_query"] = nullptr;
+	if (record.prior)
+		line["prior"] = {
+			{"sigma_xy", record.prior->sigmaXY},
+			{"sigma_z", record.prior->sigmaZ},
+			{"sigma_yaw", record.prior->sigmaYaw}};
+	else
+		line["prior"] = nullptr;
 	line["query_objects"] = v.queryObjects;
 	line["candidates"] = v.candidates;
 	line["graphs_match"] = v.graphsMatch;
 	line["matched_edge_share"] = v.matchedEdgeShare;
 	line["matching_score"] = v.matchingScore;
+	line["evidence"] = v.evidence;
 	line["centre_rmse"] = v.centreRmse;
 	line["runner_up"] = v.runnerUp;
 	line["alignment_fitness"] = v.alignmentFitness;

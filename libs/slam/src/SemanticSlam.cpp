@@ -237,7 +237,8 @@ void SemanticSlam::closeLoop(mrpt::Clock::time_point time)
 	record.frame = frameCount() - 1;
 	record.time = time;
 	record.localMapSince = localMap_.firstFrame();
-	record.verdict = loopCloser_->detect(localMap_);
+	record.prior = driftPrior();
+	record.verdict = loopCloser_->detect(localMap_, record.prior);
 	record.matched = matchedObjects(record.verdict);
 	if (record.verdict.decision == LoopVerdict::Decision::Accepted)
 	{
@@ -258,7 +259,37 @@ void SemanticSlam::closeLoop(mrpt::Clock::time_point time)
 			mrpt::system::LVL_INFO, "frame %zu: loop closed: %s", record.frame,
 			record.verdict.reason.c_str());
 	}
+	// Sec. IV-B asks once; what is ambiguous may be clear when more of it is known.
+	localMap_.keepGrowing(record.verdict.decision == LoopVerdict::Decision::Ambiguous);
 	loops_.push_back(std::move(record));
+}
+
+std::size_t SemanticSlam::frameAt(mrpt::Clock::time_point time) const
+{
+	const auto frame = std::lower_bound(
+		odometryTrajectory_.begin(), odometryTrajectory_.end() - 1, time,
+		[](const StampedPose& pose, mrpt::Clock::time_point t) { return pose.time < t; });
+	return std::size_t(frame - odometryTrajectory_.begin());
+}
+
+std::optional<PosePrior> SemanticSlam::driftPrior() const
+{
+	mrpt::math::TPoint3D sum(0, 0, 0);
+	std::size_t inside = 0;
+	auto since = odometryTrajectory_.back().time;
+	for (const auto& [id, object] : map_->objects())
+	{
+		if (!localMap_.contains(id))
+		{
+			since = std::min(since, object.lastSeen);
+			continue;
+		}
+		sum += object.centre();
+		++inside;
+	}
+	if (inside == 0 || inside == map_->objects().size()) return {};
+	return driftPrior_.prior(
+		frameAt(since), frameCount() - 1, cameraPose(), sum * (1.0 / double(inside)));
 }
 
 double SemanticSlam::driftSigmas(const LoopVerdict& verdict) const
@@ -270,12 +301,8 @@ double SemanticSlam::driftSigmas(const LoopVerdict& verdict) const
 		centroid += map_->object(query).centre() * (1.0 / double(verdict.matches.size()));
 		since = std::min(since, map_->object(target).lastSeen);
 	}
-	const auto frame = std::lower_bound(
-		odometryTrajectory_.begin(), odometryTrajectory_.end() - 1, since,
-		[](const StampedPose& pose, mrpt::Clock::time_point time) { return pose.time < time; });
 	return driftPrior_.sigmas(
-		std::size_t(frame - odometryTrajectory_.begin()), frameCount() - 1, cameraPose(),
-		verdict.T_target_query, centroid);
+		frameAt(since), frameCount() - 1, cameraPose(), verdict.T_target_query, centroid);
 }
 
 void SemanticSlam::followOptimizedCamera()

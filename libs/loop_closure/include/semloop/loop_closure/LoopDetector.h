@@ -4,8 +4,11 @@
 #include <mrpt/poses/CPose3D.h>
 #include <mrpt/rtti/CObject.h>
 #include <semloop/loop_closure/GraphMatcher.h>
+#include <semloop/loop_closure/PosePrior.h>
 
 #include <Eigen/Core>
+#include <optional>
+#include <set>
 #include <string>
 #include <utility>
 #include <vector>
@@ -41,14 +44,15 @@ struct LoopVerdict
 	/** As many as matches, in their order: the local map has its own drift, so each object has its own
 	 *  correction. Empty when the detector measures none; T_target_query then holds for all. */
 	std::vector<MatchAlignment> alignments;
-	/** The graph matcher's, before the verification; query id first. */
+	/** As the graphs were matched, before surfaces were compared; query id first. */
 	std::vector<std::pair<ObjectId, ObjectId>> candidates;
-	bool graphsMatch = false;       //!< they are a detection, to be verified
+	bool graphsMatch = false;       //!< they are a detection, whatever the surfaces say
 	std::size_t queryObjects = 0;   //!< objects in the local map
 	double matchedEdgeShare = 0.0;  //!< matched edges / edges of the query graph, [0, 1]
 	double matchingScore = 0.0;     //!< of the graph matcher
+	double evidence = 0.0;          //!< of the place, see PlaceSearch
 	double centreRmse = 0.0;        //!< of the matched centres under T_target_query [m]
-	double runnerUp = 0.0;          //!< inliers of the best rival / ours, in [0, 1]
+	double runnerUp = 0.0;          //!< evidence of the best other place / ours, in [0, 1]
 	double alignmentFitness = 0.0;  //!< share of aligned surface points, [0, 1]
 	double alignmentRmse = 0.0;     //!< of the aligned surfaces [m]
 };
@@ -61,9 +65,11 @@ class LoopDetector : public mrpt::rtti::CObject
 public:
 	virtual void configure(
 		const mrpt::config::CConfigFileBase& config, const std::string& section) = 0;
+	/** Query and target are in one (drifted) world: the prior is about no correction at all. Without one
+	 *  nothing is known of the drift. */
 	virtual LoopVerdict detect(
-		const CObjectMap& map, const std::set<ObjectId>& query,
-		const std::set<ObjectId>& target) const = 0;
+		const CObjectMap& map, const std::set<ObjectId>& query, const std::set<ObjectId>& target,
+		const std::optional<PosePrior>& prior) const = 0;
 };
 
 const char* toString(LoopVerdict::Decision decision);  //!< "accepted", "rejected", "ambiguous"

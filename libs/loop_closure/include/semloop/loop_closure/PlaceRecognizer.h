@@ -1,5 +1,6 @@
 #pragma once
 
+#include <mrpt/config/CConfigFileBase.h>
 #include <semloop/config/Options.h>
 #include <semloop/loop_closure/GraphIndex.h>
 #include <semloop/loop_closure/GraphMatcher.h>
@@ -23,6 +24,7 @@ struct PlaceRecognizerOptions : Options
 
 	/** Public: the loop detector has these keys in its own section. */
 	void describe(OptionFields& fields) override;
+	void requireConsistent() const override;
 };
 
 /** Recognises one semantic graph in another, without surfaces, and gives one of three answers:
@@ -46,8 +48,12 @@ class PlaceRecognizer
 public:
 	static std::vector<std::string> matcherNames();
 
-	/** Throws UsageError for a matcher of another name. */
-	explicit PlaceRecognizer(const PlaceRecognizerOptions& options = {});
+	/** A registered GraphMatcher of another class name proposes places by pairs of its matches, too; what is
+	 *  neither is a UsageError, which begins with `key`, where the name stands. */
+	explicit PlaceRecognizer(
+		const PlaceRecognizerOptions& options = {}, const std::string& key = "matcher");
+	/** The matcher's own keys, if it is a module. */
+	void configureMatcher(const mrpt::config::CConfigFileBase& config, const std::string& section);
 
 	/** Verdicts are by ids. Throws InputError when a graph cannot be used: see GraphIndex. */
 	LoopVerdict recognize(

@@ -4,6 +4,7 @@
 #include <semloop/config/Options.h>
 #include <semloop/loop_closure/GraphIndex.h>
 #include <semloop/loop_closure/GraphMatcher.h>
+#include <semloop/loop_closure/PosePrior.h>
 
 #include <memory>
 #include <optional>
@@ -28,16 +29,6 @@ struct PlaceSearchOptions : Options
 	/** Public: the loop detector has these keys in its own section. */
 	void describe(OptionFields& fields) override;
 	void requireConsistent() const override;
-};
-
-/** What odometry claims for T_target_query: normally distributed about it, in the place of the query's
- *  centroid, its height and the yaw. */
-struct PosePrior
-{
-	mrpt::poses::CPose3D T_target_query;
-	double sigmaXY = 0.8;   //!< [m]
-	double sigmaZ = 0.1;    //!< [m]
-	double sigmaYaw = 0.1;  //!< [rad]
 };
 
 /** Where the query may belong. */

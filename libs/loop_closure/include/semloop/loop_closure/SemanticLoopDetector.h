@@ -1,21 +1,20 @@
 #pragma once
 
 #include <semloop/config/Options.h>
-#include <semloop/loop_closure/GeometricVerification.h>
 #include <semloop/loop_closure/LoopDetector.h>
 #include <semloop/loop_closure/ObjectAligner.h>
-
-#include <string>
+#include <semloop/loop_closure/PlaceRecognizer.h>
 
 namespace semloop
 {
 struct SemanticLoopDetectorOptions : Options
 {
-	std::string matcher = "semloop::SpectralMatcher";  //!< a registered GraphMatcher
-	int minObservations = 5;    //!< objects that were seen less often stay out of both graphs
-	double minEdgeShare = 0.5;  //!< Sec. IV-B
-	double edgeLengthTolerance = 0.5;  //!< of a matched edge [m]
-	GeometricVerificationOptions verification;
+	int minObservations = 5;          //!< objects that were seen less often stay out of both graphs
+	double maxHorizontalError = 0.3;  //!< of matched centres under the surfaces' pose [m]
+	double maxVerticalError = 0.25;   //!< same [m]
+	PlaceRecognizerOptions recognition;
+
+	void requireConsistent() const override;
 
 protected:
 	void describe(OptionFields& fields) override;
@@ -24,39 +23,33 @@ protected:
 /** The paper's loop detection, Sec. III-C and IV-B, with the checks that keep false loops out:
  *
  *  1. graphs of the query's and of the target's objects;
- *  2. correspondences (GraphMatcher);
- *  3. at least minEdgeShare of the query's edges are matched;
- *  4. the centres fit one rigid motion (verifyGeometry), and no other place fits as well: a rival
- *     counts however far it is;
- *  5. the surfaces of the matched objects align (ObjectAligner).
+ *  2. the place where the query belongs, and how probable it is, rivals in the whole target and the drift
+ *     prior weighed (PlaceRecognizer);
+ *  3. the surfaces of the matched objects align (ObjectAligner); matches whose centres the surfaces' pose does
+ *     not bring together are dropped, and the loop with them when it was most of them.
  *
  *  Query and target are in one (drifted) world, so T_target_query is the correction of the drift.
- *  Every rejection carries its numbers; a graph too large for the matcher is a rejection too. */
+ *  Every verdict carries its numbers; a graph too large for the matcher is a rejection too. */
 class SemanticLoopDetector : public LoopDetector
 {
 	DEFINE_MRPT_OBJECT(SemanticLoopDetector, semloop)
 
 public:
-	SemanticLoopDetector();
-
-	/** Own keys and those of the verification are in `section`, the matcher's in [graph_matching],
-	 *  the aligner's in [alignment]. Throws UsageError when `matcher` is no registered GraphMatcher. */
+	/** Own keys and those of the recognition are in `section`, the matcher's in [graph_matching],
+	 *  the aligner's in [alignment]. Throws UsageError when `matcher` is neither one of
+	 *  PlaceRecognizer::matcherNames() nor a registered GraphMatcher. */
 	void configure(
 		const mrpt::config::CConfigFileBase& config, const std::string& section) override;
 
-	/** Steps 1 to 5. */
 	LoopVerdict detect(
-		const CObjectMap& map, const std::set<ObjectId>& query,
-		const std::set<ObjectId>& target) const override;
-
-	/** Steps 2 to 4, for graphs without surfaces. */
-	LoopVerdict detect(const SemanticGraph& query, const SemanticGraph& target) const;
+		const CObjectMap& map, const std::set<ObjectId>& query, const std::set<ObjectId>& target,
+		const std::optional<PosePrior>& prior) const override;
 
 	SemanticLoopDetectorOptions options;
 	ObjectAligner aligner;
 
 private:
-	GraphMatcher::Ptr matcher_;
+	PlaceRecognizer recognizer_;
 };
 
 }  // namespace semloop

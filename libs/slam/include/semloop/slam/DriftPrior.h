@@ -1,6 +1,7 @@
 #pragma once
 
 #include <mrpt/poses/CPose3D.h>
+#include <semloop/loop_closure/PosePrior.h>
 #include <semloop/odometry/Odometry.h>
 #include <semloop/pose_graph/PoseGraph.h>
 
@@ -30,7 +31,18 @@ public:
 		std::size_t a, std::size_t b, const mrpt::poses::CPose3D& T_world_camera,
 		const mrpt::poses::CPose3D& T_target_query, const mrpt::math::TPoint3D& point) const;
 
+	/** The same as a loop detector's prior: no correction, with the standard deviations of S; of the
+	 *  horizontal directions the larger one. Parameters as of sigmas(). */
+	PosePrior prior(
+		std::size_t a, std::size_t b, const mrpt::poses::CPose3D& T_world_camera,
+		const mrpt::math::TPoint3D& point) const;
+
 private:
+	/** S: of x, y, z [m] and yaw [rad]. */
+	Eigen::Matrix4d covarianceAt(
+		std::size_t a, std::size_t b, const mrpt::poses::CPose3D& T_world_camera,
+		const mrpt::math::TPoint3D& point) const;
+
 	struct Step
 	{
 		mrpt::poses::CPose3D T_previous_camera;

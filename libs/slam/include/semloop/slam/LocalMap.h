@@ -17,7 +17,8 @@ struct LocalMapOptions : Options
 	double length = 2.0;           //!< path over which objects stay in the local map [m]
 	double metresPerRadian = 0.5;  //!< a turn counts as this much path [m/rad]
 	double pathBetweenLoops =
-		1.0;  //!< before that the drift since the last loop is not known better [m]
+		1.0;              //!< before that the drift since the last loop is not known better [m]
+	double growth = 2.0;  //!< of the length while it is not clear where the local map belongs [m]
 
 protected:
 	void describe(OptionFields& fields) override;
@@ -47,6 +48,8 @@ public:
 	void merge(ObjectId kept, ObjectId absorbed);
 	void remove(ObjectId id) { lastSeen_.erase(id); }
 	void loopClosed() { pathAtLoop_ = path_; }
+	/** Forgets nothing from now on, for `growth` metres, or all that is too old. */
+	void keepGrowing(bool yes);
 	/** Far enough from the last loop closure to look for another one. */
 	bool isLoopDue() const
 	{
@@ -59,9 +62,13 @@ public:
 	double path() const { return path_; }  //!< travelled so far [m]
 
 private:
+	/** Path over which objects stay now [m]. */
+	double length() const;
+
 	LocalMapOptions options_;
 	double path_ = 0.0;
-	std::vector<double> pathAtFrame_;  //!< [m]
+	std::optional<double> growingFrom_;  //!< path [m]
+	std::vector<double> pathAtFrame_;    //!< [m]
 	std::optional<double> pathAtLoop_;
 	std::map<ObjectId, double> lastSeen_;  //!< object -> path when last seen [m]
 };

@@ -8,6 +8,7 @@
 #include <semloop/slam/StageTimings.h>
 
 #include <memory>
+#include <optional>
 #include <set>
 
 namespace semloop
@@ -22,7 +23,7 @@ public:
 		std::shared_ptr<const LoopDetector> detector, StageTimings& timings);
 
 	/** Query: the local map; target: everything else. */
-	LoopVerdict detect(const LocalMap& localMap) const;
+	LoopVerdict detect(const LocalMap& localMap, const std::optional<PosePrior>& prior) const;
 	/** Carries out an accepted verdict: an edge joins each matched object of the local map to its
 	 *  partner, all poses are optimised, and the objects moved and merged, except where the other
 	 *  measurements contradict the edge. The pose graph keeps both nodes of a merged object. Merged

@@ -23,7 +23,8 @@ struct LoopRecord
 {
 	std::size_t frame = 0;  //!< camera node at which it was tried
 	mrpt::Clock::time_point time;
-	std::size_t localMapSince = 0;  //!< camera node from which on the local map is
+	std::size_t localMapSince = 0;   //!< camera node from which on the local map is
+	std::optional<PosePrior> prior;  //!< the detector's
 	LoopVerdict verdict;
 	/** Of the correction, see DriftPrior; when the detector accepted. */
 	std::optional<double> driftSigmas;

@@ -83,8 +83,11 @@ private:
 	void maintainMap();
 	std::vector<MatchedObjects> matchedObjects(const LoopVerdict& verdict) const;
 	void closeLoop(mrpt::Clock::time_point time);
+	/** What odometry says of the local map against the oldest part of the rest; empty while there is none. */
+	std::optional<PosePrior> driftPrior() const;
 	/** How improbable the correction is, see DriftPrior. */
 	double driftSigmas(const LoopVerdict& verdict) const;
+	std::size_t frameAt(mrpt::Clock::time_point time) const;
 	void followOptimizedCamera();
 
 	mrpt::poses::CPose3D cameraPose() const

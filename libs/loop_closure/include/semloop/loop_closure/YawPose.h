@@ -4,6 +4,8 @@
 #include <mrpt/poses/CPose3D.h>
 
 #include <cmath>
+#include <optional>
+#include <vector>
 
 namespace semloop
 {
@@ -38,5 +40,17 @@ struct YawPose
 			translation.x, translation.y, translation.z, std::atan2(sine, cosine), 0, 0);
 	}
 };
+
+/** A point and where it should come to. */
+struct WeightedPair
+{
+	mrpt::math::TPoint3D from, to;
+	double weight = 1;
+};
+
+/** The motion that minimises sum w |T from - to|^2, in closed form: the centroids coincide, and the yaw is that of
+ *  sum w conj(a) b over the horizontal differences a, b from them as complex numbers. Empty when they
+ *  leave the yaw open: fewer than two pairs, or all in one place. */
+std::optional<YawPose> fitYawPose(const std::vector<WeightedPair>& pairs);
 
 }  // namespace semloop
