@@ -1,5 +1,4 @@
 #include <benchmark/benchmark.h>
-#include <semloop/loop_closure/ObjectAligner.h>
 #include <semloop/loop_closure/PlaceSearch.h>
 #include <semloop/loop_closure/SpectralMatcher.h>
 #include <Eigen/Core>
@@ -188,48 +187,6 @@ void spectralMatchOfRun(benchmark::State& state, const std::string& file)
 	state.counters["sparsity"] = sparsities / double(queries.size());
 }
 
-/** The upper halves of eight ellipsoids with a point a centimetre, 20 000 in all. */
-std::vector<SurfacePair> ellipsoids()
-{
-	std::vector<SurfacePair> pairs;
-	for (int k = 0; k < 8; ++k)
-	{
-		SurfacePair pair;
-		pair.queryCentre = {0.4 * (k % 4), 0.5 * (k / 4), 0.8};
-		pair.targetCentre = pair.queryCentre;
-		const double a = 0.10 + 0.01 * k, b = 0.15, c = 0.2;
-		for (double u = 0; u < 2 * M_PI; u += 0.06)
-			for (double v = 0; v < M_PI / 2; v += 0.065)
-			{
-				const double x = std::cos(u) * std::cos(v), y = std::sin(u) * std::cos(v),
-							 z = std::sin(v);
-				const Eigen::Vector3d normal = Eigen::Vector3d(x / a, y / b, z / c).normalized();
-				SurfacePoint point;
-				point.position = {
-					static_cast<float>(pair.queryCentre.x + a * x),
-					static_cast<float>(pair.queryCentre.y + b * y),
-					static_cast<float>(pair.queryCentre.z + c * z)};
-				point.normal = {
-					static_cast<float>(normal.x()), static_cast<float>(normal.y()),
-					static_cast<float>(normal.z())};
-				pair.query.push_back(point);
-			}
-		pair.target = pair.query;
-		pairs.push_back(pair);
-	}
-	return pairs;
-}
-
-void alignment(benchmark::State& state, const std::string& method)
-{
-	const auto pairs = ellipsoids();
-	ObjectAligner aligner;
-	aligner.options.method = method;
-	const auto start = mrpt::poses::CPose3D::FromXYZYawPitchRoll(0.1, -0.05, 0.02, 0.05, 0, 0);
-	for (auto _ : state) benchmark::DoNotOptimize(aligner.align(pairs, start));
-}
-BENCHMARK_CAPTURE(alignment, semanticPose, "semantic_pose")->Unit(benchmark::kMillisecond);
-BENCHMARK_CAPTURE(alignment, fpfhRansac, "fpfh_ransac")->Unit(benchmark::kMillisecond);
 }  // namespace
 
 /** What is left of the arguments are the objects.json of runs. */

@@ -10,7 +10,7 @@ packages=(
   cmake ninja-build g++ ccache pkg-config
   # libraries
   libmrpt-dev libeigen3-dev libopencv-dev libopencv-contrib-dev libpcl-dev libceres-dev
-  libopenni2-dev libspectra-dev nlohmann-json3-dev zlib1g-dev libexpat1-dev libx11-dev
+  libopenni2-dev libspectra-dev libnanoflann-dev nlohmann-json3-dev zlib1g-dev libexpat1-dev libx11-dev
   # simulation
   libembree-dev libtinyobjloader-dev libzip-dev sweethome3d-furniture
   # tests and benchmarks

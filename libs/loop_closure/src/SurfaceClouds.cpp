@@ -1,12 +1,10 @@
 #include "SurfaceClouds.h"
 
-#include <pcl/kdtree/kdtree_flann.h>
-#include <pcl/point_cloud.h>
-#include <pcl/point_types.h>
-
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
+#include <nanoflann.hpp>
 #include <numeric>
 
 namespace semloop
@@ -92,22 +90,58 @@ Cloud thinned(const Cloud& cloud, double voxel)
 	return result;
 }
 
+namespace
+{
+/** The nearest one, of those within a distance: branches further away are never looked at. */
+class NearestWithin
+{
+public:
+	explicit NearestWithin(float squaredDistance) : squaredDistance_(squaredDistance) {}
+
+	/** Of a whole leaf, also what is further than the last one. */
+	bool addPoint(float squaredDistance, Eigen::Index index)
+	{
+		if (squaredDistance >= squaredDistance_) return true;
+		squaredDistance_ = squaredDistance;
+		index_ = index;
+		return true;
+	}
+	float worstDist() const { return squaredDistance_; }
+	bool full() const { return true; }
+	std::size_t size() const { return index_ ? 1 : 0; }
+
+	std::optional<Eigen::Index> index() const { return index_; }
+
+private:
+	float squaredDistance_;
+	std::optional<Eigen::Index> index_;
+};
+}  // namespace
+
 struct NearestPoint::Tree
 {
-	pcl::KdTreeFLANN<pcl::PointXYZ> index;
-	pcl::Indices indices = pcl::Indices(1);
-	std::vector<float> squaredDistances = std::vector<float>(1);
+	// What nanoflann asks of its points.
+	std::size_t kdtree_get_point_count() const { return std::size_t(points.cols()); }
+	float kdtree_get_pt(Eigen::Index i, std::size_t axis) const
+	{
+		return points(Eigen::Index(axis), i);
+	}
+	template <class Box>
+	bool kdtree_get_bbox(Box&) const
+	{
+		return false;
+	}
+
+	explicit Tree(const Eigen::Matrix3Xd& all) : points(all.cast<float>()), index(3, *this) {}
+
+	const Eigen::Matrix3Xf points;
+	nanoflann::KDTreeSingleIndexAdaptor<
+		nanoflann::L2_Simple_Adaptor<float, Tree>, Tree, 3, Eigen::Index>
+		index;
 };
 
-NearestPoint::NearestPoint(const Eigen::Matrix3Xd& points) : tree_(std::make_unique<Tree>())
+NearestPoint::NearestPoint(const Eigen::Matrix3Xd& points) : tree_(std::make_unique<Tree>(points))
 {
-	auto cloud = std::make_shared<pcl::PointCloud<pcl::PointXYZ>>();
-	for (Eigen::Index i = 0; i < points.cols(); ++i)
-	{
-		const Eigen::Vector3f p = points.col(i).cast<float>();
-		cloud->emplace_back(p.x(), p.y(), p.z());
-	}
-	tree_->index.setInputCloud(cloud);
 }
 
 NearestPoint::~NearestPoint() = default;
@@ -117,10 +151,11 @@ std::optional<Eigen::Index> NearestPoint::find(
 	const Eigen::Vector3d& point, double maxDistance) const
 {
 	const Eigen::Vector3f p = point.cast<float>();
-	auto& [index, indices, squaredDistances] = *tree_;
-	if (index.nearestKSearch({p.x(), p.y(), p.z()}, 1, indices, squaredDistances) < 1) return {};
-	if (squaredDistances[0] > maxDistance * maxDistance) return {};
-	return indices[0];
+	// Nearer than this, so that maxDistance itself is within.
+	NearestWithin nearest(
+		std::nextafter(float(maxDistance * maxDistance), std::numeric_limits<float>::max()));
+	tree_->index.findNeighbors(nearest, p.data(), {});
+	return nearest.index();
 }
 
 Eigen::Index CloudPairs::queryPoints() const
