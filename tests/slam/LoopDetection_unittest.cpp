@@ -1,0 +1,118 @@
+#include <gtest/gtest.h>
+#include <mrpt/system/COutputLogger.h>
+#include <semloop/observations/RawlogReader.h>
+#include <semloop/slam/Configuration.h>
+#include <semloop/slam/FrameSource.h>
+#include <semloop/slam/RunResults.h>
+
+#include <nlohmann/json.hpp>
+#include <sstream>
+
+#include "SyntheticRun.h"
+
+using namespace semloop;
+using namespace semloop::synthetic;
+
+namespace semloop
+{
+/** Answers as the configuration says, and keeps what it was asked. */
+class ScriptedDetector : public LoopDetector
+{
+	DEFINE_MRPT_OBJECT(ScriptedDetector, semloop)
+public:
+	struct Question
+	{
+		std::size_t query = 0, target = 0;
+		std::optional<PosePrior> prior;
+	};
+	static std::vector<Question> questions;
+
+	void configure(const mrpt::config::CConfigFileBase& config, const std::string& section) override
+	{
+		ambiguous_ = config.read_bool(section, "ambiguous", false);
+	}
+	LoopVerdict detect(
+		const CObjectMap&, const std::set<ObjectId>& query, const std::set<ObjectId>& target,
+		const std::optional<PosePrior>& prior) const override
+	{
+		questions.push_back({query.size(), target.size(), prior});
+		LoopVerdict verdict;
+		if (ambiguous_) verdict.decision = LoopVerdict::Decision::Ambiguous;
+		verdict.probability = 0.25;
+		return verdict;
+	}
+
+private:
+	bool ambiguous_ = false;
+};
+std::vector<ScriptedDetector::Question> ScriptedDetector::questions;
+}  // namespace semloop
+
+IMPLEMENTS_MRPT_OBJECT(ScriptedDetector, semloop::LoopDetector, semloop)
+
+namespace
+{
+/** Frames of the local map at each attempt, on a walk of 150 degrees round the room. */
+std::vector<std::size_t> localMapLengths(bool ambiguous, std::string* lines = nullptr)
+{
+	mrpt::rtti::registerClass(CLASS_ID(ScriptedDetector));
+	ScriptedDetector::questions.clear();
+	const TemporaryFolder folder;
+	RunOptions options;
+	options.degrees = 150;
+	const RecordedRun recorded = recordRun(folder, options);
+	auto config = runConfiguration(recorded, 0.3);
+	config.write("modules", "loop_detector", "semloop::ScriptedDetector");
+	config.write("loop_detection", "ambiguous", ambiguous);
+	config.write("local_map", "length", 1.0);
+	config.write("local_map", "growth", 0.5);
+	mrpt::system::COutputLogger logger;
+	logger.logging_enable_console_output = false;
+	StageTimings timings;
+	SemanticSlam slam(config, logger, timings);
+	FrontEnd front = makeFrontEnd(config);
+	FrameSource source(std::make_unique<RawlogReader>(recorded.rawlog), front, 0, timings);
+	while (auto frame = source.next()) slam.process(*frame);
+	std::vector<std::size_t> lengths;
+	for (const auto& record : slam.loops()) lengths.push_back(record.frame - record.localMapSince);
+	if (lines) *lines = loopsAsJsonLines(slam.loops());
+	return lengths;
+}
+}  // namespace
+
+TEST(LoopDetection, IsToldWhatOdometrySaysOfTheDriftSinceTheRestWasSeen)
+{
+	std::string lines;
+	localMapLengths(false, &lines);
+	const auto& questions = ScriptedDetector::questions;
+	ASSERT_GT(questions.size(), 5u);
+	double last = 0;
+	for (const auto& question : questions)
+	{
+		ASSERT_EQ(question.prior.has_value(), question.query > 0 && question.target > 0);
+		if (!question.prior) continue;
+		EXPECT_EQ(question.prior->T_target_query, CPose3D());
+		// 0.3 m are the loop closure's own; the drift comes on top and grows.
+		EXPECT_GT(question.prior->sigmaXY, 0.3);
+		last = question.prior->sigmaXY;
+	}
+	EXPECT_FALSE(questions.front().prior.has_value()) << "everything is in the local map";
+	ASSERT_TRUE(questions.back().prior.has_value());
+
+	std::istringstream stream(lines);
+	std::string line;
+	nlohmann::json written;
+	while (std::getline(stream, line)) written = nlohmann::json::parse(line);
+	EXPECT_EQ(written["prior"]["sigma_xy"], last);
+	EXPECT_EQ(written["probability"], 0.25);
+}
+
+TEST(LoopDetection, AnAmbiguousAnswerKeepsTheLocalMapGrowing)
+{
+	const auto rejected = localMapLengths(false), ambiguous = localMapLengths(true);
+	ASSERT_EQ(rejected.size(), ambiguous.size());
+	EXPECT_EQ(rejected.front(), ambiguous.front());
+	// Half a metre longer at the end, and no more: a third of it.
+	EXPECT_GT(double(ambiguous.back()), 1.3 * double(rejected.back()));
+	EXPECT_LT(double(ambiguous.back()), 1.7 * double(rejected.back()));
+}
