@@ -216,6 +216,43 @@ TEST(PlaceSearch, NothingInCommonIsNoPlace)
 	EXPECT_TRUE(placesOf(pile, pile).found.empty());
 }
 
+TEST(PlaceSearch, HalfOfADeskIsEnoughAmongThousandsOfObjects)
+{
+	std::mt19937 random(3);
+	std::normal_distribution<double> noise(0, 0.06);
+	std::uniform_real_distribution<double> unit(0, 1);
+	const auto anywhere = [&](ObjectId id, double size)
+	{
+		return vertex(
+			id, "label" + std::to_string(int(20 * unit(random))), size * unit(random),
+			size * unit(random), 2 * unit(random));
+	};
+	SemanticGraph target;
+	for (ObjectId id = 0; id < 5000; ++id) target.vertices.push_back(anywhere(id, 70));
+	const GraphIndex index(target);
+	for (int trial = 0; trial < 10; ++trial)
+	{
+		// All of 4 m round a place: half as they are, half of them now something else.
+		const double x = 10 + 50 * unit(random), y = 10 + 50 * unit(random);
+		const auto T = yawPose(x, y, 0, 6 * unit(random));
+		SemanticGraph query;
+		for (const auto& v : target.vertices)
+		{
+			if (std::hypot(v.position.x - x, v.position.y - y) > 2.5) continue;
+			const auto before = (-T).composePoint(v.position);
+			auto changed = anywhere(v.id, 1);
+			changed.position = before;
+			auto same = v;
+			same.position = before + TPoint3D(noise(random), noise(random), noise(random));
+			query.vertices.push_back(query.vertices.size() % 2 ? changed : same);
+		}
+		ASSERT_GE(query.vertices.size(), 12u);
+		const auto places = PlaceSearch(query, index).places();
+		ASSERT_FALSE(places.found.empty());
+		EXPECT_LT(places.found[0].T_target_query.distanceTo(T), 0.2) << "trial " << trial;
+	}
+}
+
 TEST(PlaceSearch, ThousandsOfLookalikesEndTheSearchBeforeItIsComplete)
 {
 	SemanticGraph field;

@@ -18,7 +18,9 @@ constexpr double kMinBaseline = 0.25;    // horizontal, below it two centres do 
 constexpr double kHorizontalGate = 0.6;  // difference of two distances, four times 0.15 [m]
 constexpr double kVerticalGate = 0.45;   // three times 0.15 [m]
 constexpr std::size_t kAllPairsUpTo = 16;  // objects of the query
-// Candidates looked at. Thousands of objects that all look alike must not take for ever: about a second.
+constexpr double kWorkForAllPairs = 2e6;   // pairs of candidates
+constexpr std::size_t kGroupSize = 4;
+// Candidates looked at. Thousands of objects that all look alike must not take for ever: a few seconds.
 constexpr std::ptrdiff_t kMostWork = 200'000'000;
 constexpr std::size_t kHypotheses = 12;  // that are refined
 // Evidence behind the best from where no rival comes back: the refinement adds half of it at most.
@@ -161,6 +163,7 @@ public:
 		const auto end = probes.begin() + std::ptrdiff_t(std::min(probes.size(), kAllPairsUpTo));
 		others.assign(end, probes.end());
 		probes.erase(end, probes.end());
+		makePairs();
 	}
 
 	const PlaceSearchOptions options;
@@ -168,6 +171,36 @@ public:
 	const MatchCandidates candidates;
 	/** Objects with candidates; pairs are made of the probes. */
 	std::vector<std::size_t> probes, others;
+	std::vector<std::pair<std::size_t, std::size_t>> pairs;  //!< that propose poses
+
+private:
+	/** All, or in a large map those within groups of four probes: of more objects of one place than there are
+	 *  groups two are in one. Neighbours are in different groups, for a short pair tells little of the yaw. */
+	void makePairs()
+	{
+		double work = 0;
+		for (std::size_t a = 0; a < probes.size(); ++a)
+			for (std::size_t b = a + 1; b < probes.size(); ++b)
+			{
+				pairs.emplace_back(probes[a], probes[b]);
+				work += double(candidates.of(probes[a]).size()) *
+						double(candidates.of(probes[b]).size());
+			}
+		const std::size_t groups = probes.size() / kGroupSize;
+		if (work < kWorkForAllPairs || groups < 2) return;
+		auto byPlace = probes;
+		std::stable_sort(
+			byPlace.begin(), byPlace.end(),
+			[&](std::size_t a, std::size_t b)
+			{ return candidates.point(a).x < candidates.point(b).x; });
+		std::vector<std::size_t> group(candidates.size());
+		for (std::size_t i = 0; i < byPlace.size(); ++i) group[byPlace[i]] = i % groups;
+		pairs.erase(
+			std::remove_if(
+				pairs.begin(), pairs.end(),
+				[&](const auto& pair) { return group[pair.first] != group[pair.second]; }),
+			pairs.end());
+	}
 };
 
 namespace
@@ -189,9 +222,7 @@ public:
 	/** Two objects and all that they may be. */
 	void tryAll()
 	{
-		const auto& probes = impl_.probes;
-		for (std::size_t a = 0; a < probes.size(); ++a)
-			for (std::size_t b = a + 1; b < probes.size(); ++b) tryAll(probes[a], probes[b]);
+		for (const auto& [a, b] : impl_.pairs) tryAll(a, b);
 	}
 
 	void tryPairsOf(const std::vector<Match>& matches)

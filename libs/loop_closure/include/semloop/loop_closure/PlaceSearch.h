@@ -70,8 +70,8 @@ struct Places
  *  is the mean of both, by their variances.
  *
  *  Two matches make a pose: those whose horizontal and vertical distances agree are tried, all of them up
- *  to 16 objects in the query, and evenly chosen ones beyond: of n objects any place that explains half is
- *  met by several pairs. Nothing is left to chance; where thousands of objects look alike the search ends
+ *  to 16 objects in the query, and chosen ones beyond and in maps of thousands: any place that explains half of the
+ *  objects is met by several pairs. Nothing is left to chance; where thousands of objects look alike the search ends
  *  before it is complete, and says so. Objects of another label are candidates when they look the same. */
 class PlaceSearch
 {
