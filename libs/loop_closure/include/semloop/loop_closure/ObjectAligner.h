@@ -27,7 +27,7 @@ struct ObjectAlignerOptions : Options
 	double surfaceSigma = 0.01;    //!< how well aligned surfaces agree [m]
 	double tiltSigma = 0.05;       //!< of the correction's roll and pitch: gravity is known [rad]
 	double rotationSigma = 0.2;    //!< how far an object's rotation is from the joint one [rad]
-	double minFitness = 0.2;       //!< aligned share of the query's points
+	double minFitness = 0.3;       //!< aligned share of the query's points
 	double maxRmse = 0.025;        //!< of the aligned points, along the target's normals [m]
 	double maxCorrection = 0.7;    //!< from the semantic pose, RMS over the query's points [m]
 	double featureRadius = 0.12;   //!< of an FPFH [m]
