@@ -48,6 +48,30 @@ TEST(DriftPrior, TurnsAnEarlyErrorOfHeadingIntoOneOfThePlace)
 	EXPECT_NEAR(P(5, 5), 0.04, 1e-12);
 }
 
+TEST(DriftPrior, CountsFromAnyFrameOnAlsoOnACurvedWay)
+{
+	const Matrix6 straight = straightAhead(5, 0.01, 0.01).covariance(2, 4);
+	// Two steps; a yaw error of the first acts over the metre of the second.
+	EXPECT_NEAR(straight(0, 0), 0.02, 1e-12);
+	EXPECT_NEAR(straight(1, 1), 0.02 + 0.01, 1e-12);
+	EXPECT_NEAR(straight(5, 5), 0.02, 1e-12);
+
+	// What happened before does not matter: the same two steps after a curve and alone.
+	OdometryEstimate step;
+	step.covariance.setZero();
+	DriftPrior curved, alone;
+	curved.add(step);
+	alone.add(step);
+	for (int i = 0; i < 40; ++i)
+	{
+		step.T_previous_camera = CPose3D(1, 0.2 * (i % 3), 0.1, 0.3, 0.05, -0.1);
+		step.covariance = (0.01 + 0.001 * i) * Matrix6::Identity();
+		curved.add(step);
+		if (i >= 38) alone.add(step);
+	}
+	EXPECT_TRUE(curved.covariance(38, 40).isApprox(alone.covariance(0, 2), 1e-9));
+}
+
 TEST(DriftPrior, FindsNoCorrectionJustWhatItExpects)
 {
 	const DriftPrior prior = straightAhead(5, 0.01, 0.001);

@@ -23,19 +23,24 @@ Eigen::Matrix3d crossMatrix(const Eigen::Vector3d& v)
 
 void DriftPrior::add(const OdometryEstimate& odometry)
 {
-	steps_.push_back({odometry.T_previous_camera, odometry.covariance});
+	if (steps_.empty())
+	{
+		steps_.emplace_back();
+		return;
+	}
+	const Step& last = steps_.back();
+	const Matrix6 Ad = adjoint(RigidTransform::fromPose(odometry.T_previous_camera).inverse());
+	steps_.push_back(
+		{last.T_first_camera + odometry.T_previous_camera,
+		 Ad * last.covariance * Ad.transpose() + odometry.covariance});
 }
 
 Matrix6 DriftPrior::covariance(std::size_t a, std::size_t b) const
 {
-	Matrix6 P = Matrix6::Zero();
-	for (std::size_t i = a + 1; i <= b; ++i)
-	{
-		const Matrix6 Ad =
-			adjoint(RigidTransform::fromPose(steps_.at(i).T_previous_camera).inverse());
-		P = Ad * P * Ad.transpose() + steps_[i].covariance;
-	}
-	return P;
+	const Step &from = steps_.at(a), &to = steps_.at(b);
+	const Matrix6 Ad =
+		adjoint(RigidTransform::fromPose(to.T_first_camera - from.T_first_camera).inverse());
+	return to.covariance - Ad * from.covariance * Ad.transpose();
 }
 
 Eigen::Matrix4d DriftPrior::covarianceAt(

@@ -19,7 +19,7 @@ public:
 	void add(const OdometryEstimate& odometry);
 
 	/** Covariance of T_a_b of two frames, a <= b, about b: T_a_b exp(d), order (rho [m], phi [rad]).
-	 *  By P_ac = Ad(T_b_c^-1) P_ab Ad(T_b_c^-1)^T + Q_bc over the frames between. */
+	 *  P_ac = Ad(T_b_c^-1) P_ab Ad(T_b_c^-1)^T + P_bc makes those of the first frame, and from them any. */
 	Matrix6 covariance(std::size_t a, std::size_t b) const;
 
 	/** How far a correction is from what odometry expects, which is none: sqrt(e^T S^-1 e) of
@@ -45,8 +45,8 @@ private:
 
 	struct Step
 	{
-		mrpt::poses::CPose3D T_previous_camera;
-		Matrix6 covariance = Matrix6::Zero();
+		mrpt::poses::CPose3D T_first_camera;
+		Matrix6 covariance = Matrix6::Zero();  //!< of that
 	};
 	std::vector<Step> steps_;  //!< one a frame
 };
