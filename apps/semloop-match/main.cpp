@@ -76,7 +76,9 @@ int run(int argc, char** argv)
 	std::string names;
 	for (const auto& name : PlaceRecognizer::matcherNames())
 		names += (names.empty() ? "" : ", ") + name;
-	Text matcher("", "matcher", "One of " + names + ", or the class name of another graph matcher.", false, "pairwise", "NAME", line);
+	Text matcher(
+		"", "matcher", "One of " + names + ", or the class name of another graph matcher.", false,
+		"pairwise", "NAME", line);
 	Text sigma(
 		"", "prior-sigma",
 		"Standard deviations of the prior [m, m, rad]; 0.8 0.1 0.1 unless given.", false, "",

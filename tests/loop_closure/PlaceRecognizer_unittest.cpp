@@ -223,6 +223,37 @@ TEST(PlaceRecognizer, APlaceFarFromThePriorIsNotAccepted)
 	EXPECT_TRUE(verdict.hasPose);
 }
 
+TEST(PlaceRecognizer, APriorWiderThanTheMapSaysWhatNoPriorSays)
+{
+	const auto room = randomRoom(10, 8, 2);
+	const auto target = moved(room, yawPose(0.4, -0.3, 0.1, 0.2));
+	PosePrior prior;
+	prior.sigmaXY = prior.sigmaZ = 30;
+	prior.sigmaYaw = 5;
+	const auto vague = recognized(room, target, "pairwise", prior), none = recognized(room, target);
+	EXPECT_DOUBLE_EQ(vague.evidence, none.evidence);
+	EXPECT_EQ(vague.decision, Decision::Accepted);
+	EXPECT_EQ(vague.reason, none.reason);
+}
+
+TEST(PlaceRecognizer, APriorThatIsNoneIsNamed)
+{
+	const auto room = fourObjects();
+	for (const double sigma : {0.0, -1.0, std::nan(""), double(INFINITY)})
+	{
+		PosePrior prior;
+		prior.sigmaYaw = sigma;
+		EXPECT_THAT(
+			messageOf<InputError>([&] { recognized(room, room, "pairwise", prior); }),
+			HasSubstr("prior: its standard deviations are 0.8 m, 0.1 m and"));
+	}
+	PosePrior nowhere;
+	nowhere.T_target_query.y(std::nan(""));
+	EXPECT_THAT(
+		messageOf<InputError>([&] { recognized(room, room, "pairwise", nowhere); }),
+		HasSubstr("prior: its pose is not finite"));
+}
+
 TEST(PlaceRecognizer, AYawThatIsOpenIsAmbiguous)
 {
 	// Within 0.2 m of each other, measured as well as min_sigma says.

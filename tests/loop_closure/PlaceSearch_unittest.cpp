@@ -232,7 +232,7 @@ TEST(PlaceSearch, HalfOfADeskIsEnoughAmongThousandsOfObjects)
 	const GraphIndex index(target);
 	for (int trial = 0; trial < 10; ++trial)
 	{
-		// All of 4 m round a place: half as they are, half of them now something else.
+		// All of 2.5 m round a place: half as they are, half of them now something else.
 		const double x = 10 + 50 * unit(random), y = 10 + 50 * unit(random);
 		const auto T = yawPose(x, y, 0, 6 * unit(random));
 		SemanticGraph query;

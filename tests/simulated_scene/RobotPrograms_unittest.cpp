@@ -138,6 +138,7 @@ TEST_P(Localization, FromAnywhereInTheMapByInstancesAlone)
 	const std::string whyNot = whyNotRunnable("pf-localization");
 	if (!whyNot.empty()) GTEST_SKIP() << whyNot;
 	RobotWalk walk(folder_);
+	walk.useWorldOfTheMap();
 	walk.write(std::size_t(GetParam()), 40, false);
 	writeIni();
 	const auto estimates = localize();

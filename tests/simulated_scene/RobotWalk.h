@@ -47,15 +47,20 @@ public:
 		EXPECT_EQ(walk.code, 0) << walk.err;
 	}
 
-	/** robot.rawlog: the walk from a frame on, odometry with noise, instances with depth and, if asked
-	 *  for, a horizontal scan. */
-	void write(std::size_t firstFrame, std::size_t frames, bool withScan)
+	/** From now on in the world of the demo's map; otherwise in the flat's own. */
+	void useWorldOfTheMap()
 	{
 		T_flat_world_ =
 			absoluteTrajectoryError(associateByTime(
 										readTumTrajectory(kDemo + "result/trajectory.tum"),
 										readTumTrajectory(kDemo + "apartment_groundtruth.tum")))
 				.T_truth_estimate;
+	}
+
+	/** robot.rawlog: the walk from a frame on, odometry with noise, instances with depth and, if asked
+	 *  for, a horizontal scan. */
+	void write(std::size_t firstFrame, std::size_t frames, bool withScan)
+	{
 		const Trajectory cameras = readTumTrajectory(folder_.file("walk_groundtruth.tum"));
 		RawlogReader scans(folder_.file("walk.rawlog"));
 		RawlogReader sidecar(folder_.file("walk_instances.rawlog"));
@@ -83,9 +88,8 @@ public:
 		out.close();
 	}
 
-	/** Where the robot was at each of the frames, in the world of the map. */
+	/** Where the robot was at each of the frames, in that world. */
 	const std::vector<CPose2D>& truth() const { return truth_; }
-	/** Of the map of the demo. */
 	const CPose3D& T_flat_world() const { return T_flat_world_; }
 
 private:

@@ -40,6 +40,11 @@ PoseDensity::PoseDensity(
 	yaw_ = prior_.T_target_query.yaw();
 	peak_ =
 		(1 - doubt) / (mrpt::square(2 * M_PI * prior_.sigmaXY) * prior_.sigmaZ * prior_.sigmaYaw);
+	if (peak_ < uniform_)  // wider than the map: it says nothing
+	{
+		peak_ = 0;
+		return;
+	}
 	uniform_ *= doubt;
 	most_ = std::log(peak_ + uniform_);
 }

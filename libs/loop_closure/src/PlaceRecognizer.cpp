@@ -38,6 +38,19 @@ void addMatches(
 		ids.emplace_back(query.vertices[j].id, target.vertices[k].id);
 }
 
+void requireUsable(const PosePrior& prior)
+{
+	for (const double sigma : {prior.sigmaXY, prior.sigmaZ, prior.sigmaYaw})
+		if (!std::isfinite(sigma) || sigma <= 0)
+			throw InputError(mrpt::format(
+				"prior: its standard deviations are %g m, %g m and %g rad; they must be finite and "
+				"above 0",
+				prior.sigmaXY, prior.sigmaZ, prior.sigmaYaw));
+	const auto& T = prior.T_target_query;
+	if (!std::isfinite(T.x() + T.y() + T.z() + T.yaw()))
+		throw InputError("prior: its pose is not finite");
+}
+
 /** Of the matched centres [m]. */
 double rmseOf(
 	const SemanticGraph& query, const SemanticGraph& target, const std::vector<Match>& matches,
@@ -158,6 +171,7 @@ LoopVerdict PlaceRecognizer::recognize(
 	const SemanticGraph& query, const SemanticGraph& target, const GraphIndex& targetIndex,
 	const std::optional<PosePrior>& prior) const
 {
+	if (prior) requireUsable(*prior);
 	LoopVerdict verdict;
 	verdict.queryObjects = query.vertices.size();
 	if (query.vertices.size() < 2 || target.vertices.size() < 2)

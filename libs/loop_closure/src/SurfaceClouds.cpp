@@ -108,6 +108,7 @@ public:
 	}
 	float worstDist() const { return squaredDistance_; }
 	bool full() const { return true; }
+	void sort() {}  // nanoflann from 1.5 on asks for it
 	std::size_t size() const { return index_ ? 1 : 0; }
 
 	std::optional<Eigen::Index> index() const { return index_; }

@@ -40,7 +40,8 @@ Matrix6 DriftPrior::covariance(std::size_t a, std::size_t b) const
 	const Step &from = steps_.at(a), &to = steps_.at(b);
 	const Matrix6 Ad =
 		adjoint(RigidTransform::fromPose(to.T_first_camera - from.T_first_camera).inverse());
-	return to.covariance - Ad * from.covariance * Ad.transpose();
+	const Matrix6 P = to.covariance - Ad * from.covariance * Ad.transpose();
+	return 0.5 * (P + P.transpose());
 }
 
 Eigen::Matrix4d DriftPrior::covarianceAt(

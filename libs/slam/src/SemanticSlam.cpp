@@ -287,7 +287,8 @@ std::optional<PosePrior> SemanticSlam::driftPrior() const
 		sum += object.centre();
 		++inside;
 	}
-	if (inside == 0 || inside == map_->objects().size()) return {};
+	const bool isOneSided = inside == 0 || inside == map_->objects().size();
+	if (isOneSided || options_.maxDriftSigmas == 0) return {};
 	return driftPrior_.prior(
 		frameAt(since), frameCount() - 1, cameraPose(), sum * (1.0 / double(inside)));
 }

@@ -42,7 +42,7 @@ void SlamOptions::describe(OptionFields& f)
 	f.number(
 		"max_drift_sigmas", maxDriftSigmas, 0, 1000,
 		"a loop closure that corrects more than odometry can have drifted since its objects were "
-		"seen, in standard deviations, is rejected; 0: no limit");
+		"seen, in standard deviations, is rejected; 0: no limit, and no prior for the detector");
 	f.number(
 		"key_pose_distance", keyPoseDistance, 0.01, 100,
 		"a frame becomes a key pose of map.simplemap when no other is so near [m] ...");

@@ -55,7 +55,8 @@ public:
 	/** The matcher's own keys, if it is a module. */
 	void configureMatcher(const mrpt::config::CConfigFileBase& config, const std::string& section);
 
-	/** Verdicts are by ids. Throws InputError when a graph cannot be used: see GraphIndex. */
+	/** Verdicts are by ids. Throws InputError when a graph cannot be used (see GraphIndex), or the prior: a pose that is
+	 *  not finite, a sigma that is not finite and above 0. */
 	LoopVerdict recognize(
 		const SemanticGraph& query, const SemanticGraph& target, const GraphIndex& targetIndex,
 		const std::optional<PosePrior>& prior = {}) const;

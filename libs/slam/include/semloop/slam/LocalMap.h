@@ -48,7 +48,7 @@ public:
 	void merge(ObjectId kept, ObjectId absorbed);
 	void remove(ObjectId id) { lastSeen_.erase(id); }
 	void loopClosed() { pathAtLoop_ = path_; }
-	/** Forgets nothing from now on, for `growth` metres, or all that is too old. */
+	/** yes: objects stay longer, by the path from the first yes on, at most `growth`. no: as long as ever. */
 	void keepGrowing(bool yes);
 	/** Far enough from the last loop closure to look for another one. */
 	bool isLoopDue() const
