@@ -86,7 +86,7 @@ TEST(LoopDetection, IsToldWhatOdometrySaysOfTheDriftSinceTheRestWasSeen)
 	localMapLengths(false, &lines);
 	const auto& questions = ScriptedDetector::questions;
 	ASSERT_GT(questions.size(), 5u);
-	double last = 0;
+	double first = 0, last = 0;
 	for (const auto& question : questions)
 	{
 		ASSERT_EQ(question.prior.has_value(), question.query > 0 && question.target > 0);
@@ -94,10 +94,12 @@ TEST(LoopDetection, IsToldWhatOdometrySaysOfTheDriftSinceTheRestWasSeen)
 		EXPECT_EQ(question.prior->T_target_query, CPose3D());
 		// 0.3 m are the loop closure's own; the drift comes on top and grows.
 		EXPECT_GT(question.prior->sigmaXY, 0.3);
+		if (first == 0) first = question.prior->sigmaXY;
 		last = question.prior->sigmaXY;
 	}
 	EXPECT_FALSE(questions.front().prior.has_value()) << "everything is in the local map";
 	ASSERT_TRUE(questions.back().prior.has_value());
+	EXPECT_GT(last, first + 0.001);
 
 	std::istringstream stream(lines);
 	std::string line;
