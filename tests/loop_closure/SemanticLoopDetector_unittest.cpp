@@ -29,9 +29,9 @@ TEST(SemanticLoopDetector, ReadsTheSectionsOfAllItsParts)
 	config.write("alignment", "min_fitness", 0.125);
 	SemanticLoopDetector detector;
 	detector.configure(config, kSection);
-	EXPECT_EQ(detector.options.maxVerticalError, 0.125);
-	EXPECT_EQ(detector.options.recognition.minMatches, 7);
-	EXPECT_EQ(detector.options.recognition.search.rivalDistance, 0.5);
+	EXPECT_EQ(detector.options().maxVerticalError, 0.125);
+	EXPECT_EQ(detector.options().recognition.minMatches, 7);
+	EXPECT_EQ(detector.options().recognition.search.rivalDistance, 0.5);
 	EXPECT_EQ(detector.aligner.options.minFitness, 0.125);
 
 	config.write(kSection, "min_sigma", 2.0);
@@ -122,11 +122,11 @@ protected:
 	}
 
 	/** For objects seen in three frames. */
-	static SemanticLoopDetector makeDetector()
+	static SemanticLoopDetector makeDetector(int minObservations = 3)
 	{
-		SemanticLoopDetector detector;
-		detector.options.minObservations = 3;
-		return detector;
+		SemanticLoopDetectorOptions options;
+		options.minObservations = minObservations;
+		return SemanticLoopDetector(options);
 	}
 
 	const CPose3D drift = yawPose(0.5, -0.3, 0.05, 0.12);
@@ -136,7 +136,7 @@ protected:
 
 TEST_F(SemanticLoopDetectorOnAMap, CorrectsTheDriftToAFractionOfAVoxel)
 {
-	const auto verdict = makeDetector().detect(map, query, target, {});
+	const auto verdict = makeDetector().detect({map, query, target});
 	ASSERT_EQ(verdict.decision, Decision::Accepted) << verdict.reason;
 	EXPECT_EQ(verdict.matches.size(), kObjects);
 	const auto corrected = verdict.T_target_query + drift;
@@ -159,7 +159,7 @@ TEST_F(SemanticLoopDetectorOnAMap, AnObjectThatTheSurfacesOfTheOthersRefuteIsNoM
 {
 	// A pose of the centres spreads the 0.45 m over all, within the gates; the other four surfaces fit exactly.
 	const auto moved = mapScene(drift, 0.45);
-	const auto verdict = makeDetector().detect(map, moved, target, {});
+	const auto verdict = makeDetector().detect({map, moved, target});
 	ASSERT_EQ(verdict.decision, Decision::Accepted) << verdict.reason;
 	EXPECT_EQ(verdict.candidates.size(), kObjects);
 	ASSERT_EQ(verdict.matches.size(), kObjects - 1U);
@@ -170,10 +170,10 @@ TEST_F(SemanticLoopDetectorOnAMap, AnObjectThatTheSurfacesOfTheOthersRefuteIsNoM
 
 TEST_F(SemanticLoopDetectorOnAMap, APriorThatRulesTheCorrectionOutIsBelieved)
 {
-	EXPECT_EQ(makeDetector().detect(map, query, target, PosePrior{}).decision, Decision::Accepted);
+	EXPECT_EQ(makeDetector().detect({map, query, target, PosePrior{}}).decision, Decision::Accepted);
 	PosePrior prior;
 	prior.sigmaXY = prior.sigmaZ = prior.sigmaYaw = 0.08;
-	const auto verdict = makeDetector().detect(map, query, target, prior);
+	const auto verdict = makeDetector().detect({map, query, target, prior});
 	EXPECT_EQ(verdict.decision, Decision::Rejected);
 	EXPECT_THAT(verdict.reason, HasSubstr("standard deviations from the prior"));
 }
@@ -182,17 +182,15 @@ TEST_F(SemanticLoopDetectorOnAMap, RejectsWhenTheSurfacesDoNotAlign)
 {
 	SemanticLoopDetector detector = makeDetector();
 	detector.aligner.options.maxRmse = 1e-4;
-	const auto verdict = detector.detect(map, query, target, {});
+	const auto verdict = detector.detect({map, query, target});
 	EXPECT_EQ(verdict.decision, Decision::Rejected);
 	EXPECT_THAT(verdict.reason, HasSubstr("; but surfaces align to"));
 }
 
 TEST_F(SemanticLoopDetectorOnAMap, LeavesOutObjectsThatWereSeenTooSeldom)
 {
-	SemanticLoopDetector detector;
-	detector.options.minObservations = 4;
 	EXPECT_EQ(
-		detector.detect(map, query, target, {}).reason,
+		makeDetector(4).detect({map, query, target}).reason,
 		"0 objects against 0: a place needs two on either side");
 }
 
@@ -204,7 +202,7 @@ TEST_F(SemanticLoopDetectorOnAMap, AMatcherThatCannotTakeTheGraphIsARejection)
 	config.write(kSection, "min_observations", 3);
 	SemanticLoopDetector detector;
 	detector.configure(config, kSection);
-	const auto verdict = detector.detect(map, query, target, {});
+	const auto verdict = detector.detect({map, query, target});
 	EXPECT_EQ(verdict.decision, Decision::Rejected);
 	EXPECT_EQ(verdict.queryObjects, kObjects);
 	EXPECT_THAT(verdict.reason, HasSubstr("max_entries"));

@@ -121,6 +121,27 @@ TEST_F(LoopCloserTest, ObjectsStayTwoWhereOtherMeasurementsContradictTheLoop)
 	EXPECT_EQ(map->objects().size(), 2U);
 }
 
+TEST_F(LoopCloserTest, ALoopOfTwoCamerasCorrectsTheLaterOneAndWhatItSaw)
+{
+	// The second camera has drifted together with its object; in truth it is where the first one is.
+	const NodeId camera = NodeId::camera(1), node = NodeId::object(query);
+	graph->setNode(camera, drift + T_world_camera);
+	graph->addEdge(
+		{PoseEdge::Kind::Observation, node, camera,
+		 (-graph->pose(node)) + drift + T_world_camera, 1e4 * Matrix6::Identity()});
+	LoopVerdict found;
+	found.decision = LoopVerdict::Decision::Accepted;
+	found.cameras = {{1, 0, CPose3D(), 1e4 * Matrix6::Identity(), 50}};
+	closer.close(found, localMap, mapper);
+
+	const PoseEdge& edge = graph->edges().back();
+	EXPECT_EQ(edge.kind, PoseEdge::Kind::Loop);
+	EXPECT_EQ(edge.a, NodeId::camera(0));
+	EXPECT_EQ(edge.b, camera);
+	EXPECT_LT((graph->pose(camera) - T_world_camera).translation().norm(), 0.01);
+	EXPECT_EQ(map->objects().size(), 1U) << "the two boxes stand in one place now";
+}
+
 TEST_F(LoopCloserTest, AVerdictThatBreaksTheRulesChangesNothing)
 {
 	LoopVerdict twice = verdict(-drift);

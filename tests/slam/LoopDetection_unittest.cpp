@@ -24,18 +24,26 @@ public:
 	{
 		std::size_t query = 0, target = 0;
 		std::optional<PosePrior> prior;
+		std::size_t firstFrame = 0;
+		mrpt::poses::CPose3D T_world_camera;  //!< of the last frame
 	};
 	static std::vector<Question> questions;
+	static std::vector<std::size_t> frames;
 
 	void configure(const mrpt::config::CConfigFileBase& config, const std::string& section) override
 	{
 		ambiguous_ = config.read_bool(section, "ambiguous", false);
 	}
-	LoopVerdict detect(
-		const CObjectMap&, const std::set<ObjectId>& query, const std::set<ObjectId>& target,
-		const std::optional<PosePrior>& prior) const override
+	void addFrame(std::size_t frame, const RgbdFrame& images) override
 	{
-		questions.push_back({query.size(), target.size(), prior});
+		EXPECT_FALSE(images.color.empty());
+		frames.push_back(frame);
+	}
+	LoopVerdict detect(const LoopQuery& asked) override
+	{
+		questions.push_back(
+			{asked.query.size(), asked.target.size(), asked.prior, asked.firstFrame,
+			 asked.T_world_camera(frames.back())});
 		LoopVerdict verdict;
 		if (ambiguous_) verdict.decision = LoopVerdict::Decision::Ambiguous;
 		verdict.probability = 0.25;
@@ -46,6 +54,7 @@ private:
 	bool ambiguous_ = false;
 };
 std::vector<ScriptedDetector::Question> ScriptedDetector::questions;
+std::vector<std::size_t> ScriptedDetector::frames;
 }  // namespace semloop
 
 IMPLEMENTS_MRPT_OBJECT(ScriptedDetector, semloop::LoopDetector, semloop)
@@ -57,6 +66,7 @@ std::vector<std::size_t> localMapLengths(bool ambiguous, std::string* lines = nu
 {
 	mrpt::rtti::registerClass(CLASS_ID(ScriptedDetector));
 	ScriptedDetector::questions.clear();
+	ScriptedDetector::frames.clear();
 	const TemporaryFolder folder;
 	RunOptions options;
 	options.degrees = 150;
@@ -107,6 +117,20 @@ TEST(LoopDetection, IsToldWhatOdometrySaysOfTheDriftSinceTheRestWasSeen)
 	while (std::getline(stream, line)) written = nlohmann::json::parse(line);
 	EXPECT_EQ(written["prior"]["sigma_xy"], last);
 	EXPECT_EQ(written["probability"], 0.25);
+}
+
+TEST(LoopDetection, IsShownEveryFrameAndKnowsTheCameras)
+{
+	localMapLengths(false);
+	const auto& frames = ScriptedDetector::frames;
+	ASSERT_GT(frames.size(), 20u);
+	for (std::size_t i = 0; i < frames.size(); ++i) EXPECT_EQ(frames[i], i);
+	const auto& questions = ScriptedDetector::questions;
+	EXPECT_EQ(questions.front().firstFrame, 0u);
+	EXPECT_GT(questions.back().firstFrame, 0u);
+	// The walk goes round the middle of the room.
+	const auto &first = questions.front().T_world_camera, &last = questions.back().T_world_camera;
+	EXPECT_GT((last.translation() - first.translation()).norm(), 1.0);
 }
 
 TEST(LoopDetection, AnAmbiguousAnswerKeepsTheLocalMapGrowing)

@@ -71,26 +71,31 @@ void SemanticLoopDetectorOptions::requireConsistent() const
 	recognition.requireConsistent();
 }
 
+SemanticLoopDetector::SemanticLoopDetector(const SemanticLoopDetectorOptions& options)
+	: options_(options), recognizer_(options.recognition)
+{
+}
+
 void SemanticLoopDetector::configure(
 	const mrpt::config::CConfigFileBase& config, const std::string& section)
 {
-	options.loadFromConfigFile(config, section);
+	options_.loadFromConfigFile(config, section);
 	recognizer_ = PlaceRecognizer(
-		options.recognition, configFileName(config) + ": [" + section + "] matcher");
+		options_.recognition, configFileName(config) + ": [" + section + "] matcher");
 	recognizer_.configureMatcher(config, kMatcherSection);
 	aligner.configure(config, kAlignerSection);
 }
 
-LoopVerdict SemanticLoopDetector::detect(
-	const CObjectMap& map, const std::set<ObjectId>& query, const std::set<ObjectId>& target,
-	const std::optional<PosePrior>& prior) const
+LoopVerdict SemanticLoopDetector::detect(const LoopQuery& query)
 {
+	const CObjectMap& map = query.map;
 	LoopVerdict verdict;
-	const auto queryGraph = SemanticGraph::fromMap(map, query, options.minObservations);
-	const auto targetGraph = SemanticGraph::fromMap(map, target, options.minObservations);
+	const auto queryGraph = SemanticGraph::fromMap(map, query.query, options_.minObservations);
+	const auto targetGraph = SemanticGraph::fromMap(map, query.target, options_.minObservations);
 	try
 	{
-		verdict = recognizer_.recognize(queryGraph, targetGraph, GraphIndex(targetGraph), prior);
+		verdict =
+			recognizer_.recognize(queryGraph, targetGraph, GraphIndex(targetGraph), query.prior);
 	}
 	catch (const InputError& error)  // graphs that the matcher cannot take
 	{
@@ -107,9 +112,9 @@ LoopVerdict SemanticLoopDetector::detect(
 	verdict.T_target_query = alignment.T_target_query;
 	verdict.alignments = alignment.pairs;
 	const std::size_t matched = verdict.matches.size();
-	dropWhatTheSurfacesRefute(map, options, verdict);
+	dropWhatTheSurfacesRefute(map, options_, verdict);
 	const std::size_t left = verdict.matches.size();
-	if (int(left) < options.recognition.minMatches || 2 * left < matched)
+	if (int(left) < options_.recognition.minMatches || 2 * left < matched)
 		return reject(
 			verdict, verdict.reason +
 						 mrpt::format("; but under the pose of the surfaces only %zu do", left));

@@ -104,7 +104,7 @@ void SemanticSlam::makeModules(const mrpt::config::CConfigFileBase& config)
 
 	odometry_ = makeConfigured<Odometry>(config, modules_.odometry, "odometry", "odometry");
 	poseGraph_ = makeConfigured<PoseGraph>(config, modules_.poseGraph, "pose_graph", "pose_graph");
-	const auto detector = makeConfigured<LoopDetector>(
+	loopDetector_ = makeConfigured<LoopDetector>(
 		config, modules_.loopDetector, "loop_detector", "loop_detection");
 	const auto cost = makeConfigured<MatchingCost>(
 		config, modules_.matchingCost, "matching_cost", "matching_cost");
@@ -119,7 +119,7 @@ void SemanticSlam::makeModules(const mrpt::config::CConfigFileBase& config)
 	registration.loadFromConfigFile(config, "frame_registration");
 	tracker_ = std::make_unique<InstanceTracker>(tracking, cost, registration);
 	mapper_ = std::make_unique<ObjectMapper>(map_, associator, timings_, registration);
-	loopCloser_ = std::make_unique<LoopCloser>(map_, poseGraph_, detector, timings_);
+	loopCloser_ = std::make_unique<LoopCloser>(map_, poseGraph_, loopDetector_, timings_);
 }
 
 void SemanticSlam::makeMap(const mrpt::config::CConfigFileBase& config)

@@ -40,7 +40,7 @@ void requireConsistent(const LoopVerdict& verdict)
 
 LoopCloser::LoopCloser(
 	CObjectMap::Ptr map, std::shared_ptr<PoseGraph> poseGraph,
-	std::shared_ptr<const LoopDetector> detector, StageTimings& timings)
+	std::shared_ptr<LoopDetector> detector, StageTimings& timings)
 	: map_(std::move(map)),
 	  poseGraph_(std::move(poseGraph)),
 	  detector_(std::move(detector)),
@@ -48,38 +48,51 @@ LoopCloser::LoopCloser(
 {
 }
 
-LoopVerdict LoopCloser::detect(
-	const LocalMap& localMap, const std::optional<PosePrior>& prior) const
+LoopVerdict LoopCloser::detect(const LocalMap& localMap, const std::optional<PosePrior>& prior)
 {
 	const StageTimings::Scope timing(timings_, "loop_detection");
-	std::set<ObjectId> query, target;
+	LoopQuery asked{*map_, {}, {}, prior, localMap.firstFrame()};
 	for (const auto& [id, object] : map_->objects())
-		(localMap.contains(id) ? query : target).insert(id);
-	return detector_->detect(*map_, query, target, prior);
+		(localMap.contains(id) ? asked.query : asked.target).insert(id);
+	asked.T_world_camera = [this](std::size_t frame)
+	{ return poseGraph_->pose(NodeId::camera(frame)); };
+	return detector_->detect(asked);
 }
 
 OptimizationReport LoopCloser::close(
 	const LoopVerdict& verdict, LocalMap& localMap, ObjectMapper& mapper)
 {
 	requireConsistent(verdict);
+	const std::size_t before = poseGraph_->edges().size();
 	for (std::size_t i = 0; i < verdict.matches.size(); ++i)
 		addEdge(
 			verdict.matches[i].first, verdict.matches[i].second,
 			verdict.alignments.empty() ? MatchAlignment{verdict.T_target_query, kAsOneInformation}
 									   : verdict.alignments[i]);
+	for (const CameraMatch& match : verdict.cameras) addEdge(match);
 	const std::vector<PoseEdge> edges(
-		poseGraph_->edges().end() - std::ptrdiff_t(verdict.matches.size()),
-		poseGraph_->edges().end());
+		poseGraph_->edges().begin() + std::ptrdiff_t(before), poseGraph_->edges().end());
 	const OptimizationReport report = optimize();
 	for (const PoseEdge& edge : edges)
 	{
-		if (!agrees(edge, *poseGraph_)) continue;
+		if (edge.a.kind != NodeId::Kind::Object || !agrees(edge, *poseGraph_)) continue;
 		merge(edge.a.index, edge.b.index, localMap, mapper);
 		localMap.remove(edge.a.index);
 	}
 	localMap.loopClosed();
 	mergeAllDuplicates(localMap, mapper);
 	return report;
+}
+
+void LoopCloser::addEdge(const CameraMatch& match)
+{
+	PoseEdge edge;
+	edge.kind = PoseEdge::Kind::Loop;
+	edge.a = NodeId::camera(match.target);
+	edge.b = NodeId::camera(match.query);
+	edge.Z_a_b = match.T_target_query;
+	edge.information = match.information;
+	poseGraph_->addEdge(edge);
 }
 
 // Sec. III-D: "the camera pose and the object-camera constraint are corrected". The paper rewrites what

@@ -26,6 +26,8 @@ nlohmann::ordered_json toJson(const LoopRecord& record)
 			 {"target_label", m.targetLabel},
 			 {"query_centre", {m.queryCentre.x, m.queryCentre.y, m.queryCentre.z}},
 			 {"target_centre", {m.targetCentre.x, m.targetCentre.y, m.targetCentre.z}}});
+	auto& cameras = line["cameras"] = nlohmann::ordered_json::array();
+	for (const CameraMatch& m : v.cameras) cameras.push_back({m.query, m.target, m.inliers});
 	if (v.decision == LoopVerdict::Decision::Accepted || v.hasPose)
 	{
 		const auto T = v.T_target_query.getHomogeneousMatrixVal<mrpt::math::CMatrixDouble44>();

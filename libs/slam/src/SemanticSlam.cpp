@@ -67,6 +67,7 @@ void SemanticSlam::integrate(const SlamFrame& input, const OdometryEstimate& odo
 	addObservations(seen);
 	remember(instances, tracked, seen);
 	map_->markCovisible(localMap_.objects());
+	loopDetector_->addFrame(frameCount() - 1, frame);
 	keyFrames_->offer({frameCount() - 1, input.scan, input.instances}, *poseGraph_);
 
 	++segmentedFrames_;
@@ -297,10 +298,16 @@ double SemanticSlam::driftSigmas(const LoopVerdict& verdict) const
 {
 	mrpt::math::TPoint3D centroid(0, 0, 0);
 	auto since = odometryTrajectory_.back().time;
+	const double weight = 1.0 / double(verdict.matches.size() + verdict.cameras.size());
 	for (const auto& [query, target] : verdict.matches)
 	{
-		centroid += map_->object(query).centre() * (1.0 / double(verdict.matches.size()));
+		centroid += map_->object(query).centre() * weight;
 		since = std::min(since, map_->object(target).lastSeen);
+	}
+	for (const CameraMatch& match : verdict.cameras)
+	{
+		centroid += poseGraph_->pose(NodeId::camera(match.query)).translation() * weight;
+		since = std::min(since, odometryTrajectory_[match.target].time);
 	}
 	return driftPrior_.sigmas(
 		frameAt(since), frameCount() - 1, cameraPose(), verdict.T_target_query, centroid);

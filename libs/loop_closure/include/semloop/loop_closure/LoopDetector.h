@@ -5,8 +5,10 @@
 #include <mrpt/rtti/CObject.h>
 #include <semloop/loop_closure/GraphMatcher.h>
 #include <semloop/loop_closure/PosePrior.h>
+#include <semloop/observations/RgbdFrame.h>
 
 #include <Eigen/Core>
+#include <functional>
 #include <optional>
 #include <set>
 #include <string>
@@ -15,6 +17,29 @@
 
 namespace semloop
 {
+/** What a loop detector is asked: is the local map (query) part of the rest (target)? Both are in one,
+ *  drifted, world. */
+struct LoopQuery
+{
+	const CObjectMap& map;
+	std::set<ObjectId> query, target;  //!< objects of the local map; all others
+	/** About no correction at all; without one nothing is known of the drift. */
+	std::optional<PosePrior> prior = {};
+	std::size_t firstFrame = 0;  //!< of the local map
+	/** Of any frame, as the pose graph has it now; may be empty where only objects are asked about. */
+	std::function<mrpt::poses::CPose3D(std::size_t frame)> T_world_camera = {};
+};
+
+/** A camera of the local map as an earlier one sees it. */
+struct CameraMatch
+{
+	std::size_t query = 0, target = 0;    //!< frames
+	mrpt::poses::CPose3D T_target_query;  //!< of the cameras' optical frames
+	/** Inverse covariance of PoseEdge's residual (translation [m], rotation [rad]). */
+	Eigen::Matrix<double, 6, 6> information = Eigen::Matrix<double, 6, 6>::Identity();
+	std::size_t inliers = 0;  //!< features that agree with it
+};
+
 /** Where one matched object of the query belongs, as measured on that object alone. */
 struct MatchAlignment
 {
@@ -44,6 +69,8 @@ struct LoopVerdict
 	/** As many as matches, in their order: the local map has its own drift, so each object has its own
 	 *  correction. Empty when the detector measures none; T_target_query then holds for all. */
 	std::vector<MatchAlignment> alignments;
+	/** Of a detector of appearance, which matches frames, not objects; empty otherwise. */
+	std::vector<CameraMatch> cameras;
 	/** As the graphs were matched, before surfaces were compared; query id first. */
 	std::vector<std::pair<ObjectId, ObjectId>> candidates;
 	bool graphsMatch = false;       //!< they are a detection, whatever the surfaces say
@@ -57,7 +84,7 @@ struct LoopVerdict
 	double alignmentRmse = 0.0;     //!< of the aligned surfaces [m]
 };
 
-/** Recognises the local map (query) in the global map (target); both are objects of one map. */
+/** Recognises the local map (query) in the rest of the map (target). A module. */
 class LoopDetector : public mrpt::rtti::CObject
 {
 	DEFINE_VIRTUAL_MRPT_OBJECT(LoopDetector)
@@ -65,11 +92,11 @@ class LoopDetector : public mrpt::rtti::CObject
 public:
 	virtual void configure(
 		const mrpt::config::CConfigFileBase& config, const std::string& section) = 0;
-	/** Query and target are in one (drifted) world: the prior is about no correction at all. Without one
-	 *  nothing is known of the drift. */
-	virtual LoopVerdict detect(
-		const CObjectMap& map, const std::set<ObjectId>& query, const std::set<ObjectId>& target,
-		const std::optional<PosePrior>& prior) const = 0;
+	/** Every frame that has instances, in order: detectors of appearance remember it. The images may be
+	 *  gone after the call. */
+	virtual void addFrame(std::size_t /*frame*/, const RgbdFrame& /*images*/) {}
+	/** Not const: what does not change from one question to the next may be kept. */
+	virtual LoopVerdict detect(const LoopQuery& query) = 0;
 };
 
 const char* toString(LoopVerdict::Decision decision);  //!< "accepted", "rejected", "ambiguous"

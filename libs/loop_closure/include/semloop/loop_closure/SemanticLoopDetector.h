@@ -41,14 +41,17 @@ public:
 	void configure(
 		const mrpt::config::CConfigFileBase& config, const std::string& section) override;
 
-	LoopVerdict detect(
-		const CObjectMap& map, const std::set<ObjectId>& query, const std::set<ObjectId>& target,
-		const std::optional<PosePrior>& prior) const override;
+	SemanticLoopDetector() = default;
+	/** Throws as configure() does. */
+	explicit SemanticLoopDetector(const SemanticLoopDetectorOptions& options);
 
-	SemanticLoopDetectorOptions options;
+	LoopVerdict detect(const LoopQuery& query) override;
+
+	const SemanticLoopDetectorOptions& options() const { return options_; }
 	ObjectAligner aligner;
 
 private:
+	SemanticLoopDetectorOptions options_;
 	PlaceRecognizer recognizer_;
 };
 

@@ -20,12 +20,12 @@ class LoopCloser
 public:
 	LoopCloser(
 		CObjectMap::Ptr map, std::shared_ptr<PoseGraph> poseGraph,
-		std::shared_ptr<const LoopDetector> detector, StageTimings& timings);
+		std::shared_ptr<LoopDetector> detector, StageTimings& timings);
 
 	/** Query: the local map; target: everything else. */
-	LoopVerdict detect(const LocalMap& localMap, const std::optional<PosePrior>& prior) const;
+	LoopVerdict detect(const LocalMap& localMap, const std::optional<PosePrior>& prior);
 	/** Carries out an accepted verdict: an edge joins each matched object of the local map to its
-	 *  partner, all poses are optimised, and the objects moved and merged, except where the other
+	 *  partner, and each matched camera to the earlier one, all poses are optimised, and the objects moved and merged, except where the other
 	 *  measurements contradict the edge. The pose graph keeps both nodes of a merged object. Merged
 	 *  objects leave the local map, so that the next loop closure measures how the drift goes on.
 	 *  Throws std::logic_error, with nothing changed, on a verdict that breaks LoopVerdict's rules. */
@@ -41,13 +41,14 @@ public:
 	void mergeAllDuplicates(LocalMap& localMap, ObjectMapper& mapper);
 
 private:
+	void addEdge(const CameraMatch& match);
 	void addEdge(ObjectId query, ObjectId target, const MatchAlignment& alignment);
 	void merge(ObjectId kept, ObjectId absorbed, LocalMap& localMap, ObjectMapper& mapper);
 	void mergeDuplicatesAmong(std::set<ObjectId> objects, LocalMap& localMap, ObjectMapper& mapper);
 
 	CObjectMap::Ptr map_;
 	std::shared_ptr<PoseGraph> poseGraph_;
-	std::shared_ptr<const LoopDetector> detector_;
+	std::shared_ptr<LoopDetector> detector_;
 	StageTimings& timings_;
 };
 

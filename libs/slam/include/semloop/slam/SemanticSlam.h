@@ -108,6 +108,7 @@ private:
 	LocalMap localMap_;
 	std::unique_ptr<InstanceTracker> tracker_;
 	std::unique_ptr<ObjectMapper> mapper_;
+	std::shared_ptr<LoopDetector> loopDetector_;
 	std::unique_ptr<LoopCloser> loopCloser_;
 
 	mrpt::poses::CPose3D T_world_firstCamera_;
