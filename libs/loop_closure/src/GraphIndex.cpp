@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <tuple>
 
 namespace semloop
@@ -38,46 +37,120 @@ Eigen::VectorXf meanEmbedding(const GraphVertex& vertex)
 	if (length > 0) return sum / length;
 	return {};
 }
+
+bool isBefore(const GraphIndex::Entry& a, const GraphIndex::Entry& b)
+{
+	return std::tie(a.x, a.vertex) < std::tie(b.x, b.vertex);
+}
 }  // namespace
 
 GraphIndex::GraphIndex(const SemanticGraph& graph)
 {
-	using mrpt::math::TPoint3D;
-	constexpr double kFar = std::numeric_limits<double>::infinity();
-	TPoint3D least(kFar, kFar, 0), most(-kFar, -kFar, 0);
-	for (std::size_t i = 0; i < graph.vertices.size(); ++i)
-	{
-		const GraphVertex& vertex = graph.vertices[i];
-		const TPoint3D& p = vertex.position;
-		if (!std::isfinite(p.x) || !std::isfinite(p.y) || !std::isfinite(p.z))
-			fail(vertex, "its position is not finite; leave it out");
-		points_.push_back(p);
-		least = {std::min(least.x, p.x), std::min(least.y, p.y), 0};
-		most = {std::max(most.x, p.x), std::max(most.y, p.y), 0};
-		const auto [place, isNew] = numbers_.emplace(vertex.label, int(byLabel_.size()));
-		if (isNew) byLabel_.emplace_back();
-		labelOf_.push_back(place->second);
-		byLabel_[place->second].push_back({float(p.x), float(p.y), float(p.z), std::uint32_t(i)});
+	for (const GraphVertex& vertex : graph.vertices) append(vertex);
+	for (std::size_t i = 0; i < size(); ++i) byLabel_[labelOf_[i]].push_back(entryOf(i));
+	for (auto& entries : byLabel_) std::sort(entries.begin(), entries.end(), isBefore);
+}
 
-		const Eigen::VectorXf embedding = meanEmbedding(vertex);
-		hasEmbedding_.push_back(embedding.size() > 0);
-		if (embedding.size() == 0) continue;
-		if (embeddings_.size() == 0)
-			embeddings_.setZero(embedding.size(), Eigen::Index(graph.vertices.size()));
-		if (embedding.size() != embeddings_.rows())
-			fail(
-				vertex, "its embedding has " + std::to_string(embedding.size()) +
-							" numbers, others have " + std::to_string(embeddings_.rows()) +
-							"; describe all objects with one network");
-		embeddings_.col(Eigen::Index(i)) = embedding;
+void GraphIndex::add(const GraphVertex& vertex)
+{
+	append(vertex);
+	insertEntry(size() - 1);
+}
+
+void GraphIndex::remove(std::size_t number)
+{
+	const std::size_t last = size() - 1;
+	eraseEntry(number);
+	if (hasEmbedding_[number]) --embedded_;
+	if (number != last)
+	{
+		eraseEntry(last);
+		ids_[number] = ids_[last];
+		points_[number] = points_[last];
+		labelOf_[number] = labelOf_[last];
+		hasEmbedding_[number] = hasEmbedding_[last];
+		if (embeddings_.size() > 0)
+			embeddings_.col(Eigen::Index(number)) = embeddings_.col(Eigen::Index(last));
 	}
-	for (auto& entries : byLabel_)
-		std::sort(
-			entries.begin(), entries.end(),
-			[](const Entry& a, const Entry& b)
-			{ return std::tie(a.x, a.vertex) < std::tie(b.x, b.vertex); });
-	if (!points_.empty())
-		area_ = std::max(most.x - least.x, kLeastSide) * std::max(most.y - least.y, kLeastSide);
+	ids_.pop_back();
+	points_.pop_back();
+	labelOf_.pop_back();
+	hasEmbedding_.pop_back();
+	if (number != last) insertEntry(number);
+}
+
+/** Everything but the entry of its label. */
+void GraphIndex::append(const GraphVertex& vertex)
+{
+	const auto& p = vertex.position;
+	if (!std::isfinite(p.x) || !std::isfinite(p.y) || !std::isfinite(p.z))
+		fail(vertex, "its position is not finite; leave it out");
+	const Eigen::VectorXf embedding = meanEmbedding(vertex);
+	const bool isSeen = embedding.size() > 0;
+	if (isSeen && embedded_ > 0 && embedding.size() != embeddings_.rows())
+		fail(
+			vertex, "its embedding has " + std::to_string(embedding.size()) +
+						" numbers, others have " + std::to_string(embeddings_.rows()) +
+						"; describe all objects with one network");
+
+	if (isSeen && embedded_ == 0) embeddings_.resize(embedding.size(), 0);
+	const auto column = Eigen::Index(size());
+	if (isSeen || embedded_ > 0)
+	{
+		if (const auto room = embeddings_.cols(); room <= column)
+		{
+			const auto more = std::max<Eigen::Index>({16, 2 * room, column + 1});
+			embeddings_.conservativeResize(Eigen::NoChange, more);
+			embeddings_.rightCols(more - room).setZero();
+		}
+		if (isSeen)
+			embeddings_.col(column) = embedding;
+		else
+			embeddings_.col(column).setZero();
+	}
+	embedded_ += isSeen;
+
+	const auto [place, isNew] = numbers_.emplace(vertex.label, int(byLabel_.size()));
+	if (isNew) byLabel_.emplace_back();
+	ids_.push_back(vertex.id);
+	points_.push_back(p);
+	labelOf_.push_back(place->second);
+	hasEmbedding_.push_back(isSeen);
+}
+
+GraphIndex::Entry GraphIndex::entryOf(std::size_t vertex) const
+{
+	const auto& p = points_[vertex];
+	return {float(p.x), float(p.y), float(p.z), std::uint32_t(vertex)};
+}
+
+void GraphIndex::insertEntry(std::size_t vertex)
+{
+	auto& entries = byLabel_[labelOf_[vertex]];
+	const Entry entry = entryOf(vertex);
+	entries.insert(std::lower_bound(entries.begin(), entries.end(), entry, isBefore), entry);
+}
+
+void GraphIndex::eraseEntry(std::size_t vertex)
+{
+	auto& entries = byLabel_[labelOf_[vertex]];
+	entries.erase(std::lower_bound(entries.begin(), entries.end(), entryOf(vertex), isBefore));
+}
+
+std::size_t GraphIndex::labels() const
+{
+	return std::size_t(std::count_if(
+		byLabel_.begin(), byLabel_.end(), [](const auto& entries) { return !entries.empty(); }));
+}
+
+double GraphIndex::area() const
+{
+	if (points_.empty()) return 0;
+	const auto [left, right] = std::minmax_element(
+		points_.begin(), points_.end(), [](const auto& a, const auto& b) { return a.x < b.x; });
+	const auto [low, high] = std::minmax_element(
+		points_.begin(), points_.end(), [](const auto& a, const auto& b) { return a.y < b.y; });
+	return std::max(right->x - left->x, kLeastSide) * std::max(high->y - low->y, kLeastSide);
 }
 
 int GraphIndex::labelNumber(const std::string& label) const

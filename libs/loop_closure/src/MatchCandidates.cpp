@@ -62,9 +62,8 @@ public:
 		float sameModel)
 		: sameModel_(sameModel)
 	{
-		const auto& a = query.embeddings();
-		const auto& b = target.embeddings();
-		if (a.rows() == 0 || b.rows() == 0) return;
+		const auto a = query.embeddings(), b = target.embeddings();
+		if (a.size() == 0 || b.size() == 0) return;
 		if (a.rows() != b.rows())
 			throw InputError(
 				"embeddings of " + std::to_string(a.rows()) + " numbers against " +
@@ -154,7 +153,7 @@ MatchCandidates::MatchCandidates(
 		if (!isSeen) continue;
 		const std::size_t sameLabel = candidates_[j].size();
 		const double mistaken = (1 - options.labelAccuracy) / std::max(1.0, labelCount - 1);
-		for (int label = 0; label < int(target.labels()); ++label)
+		for (int label = 0; label < target.labelNumbers(); ++label)
 			if (label != labels[j])
 				for (const auto& entry : target.ofLabel(label))
 					if (looks.similarity(j, entry.vertex) > looks.leastOfOtherLabel())

@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <stdexcept>
 
 namespace semloop
 {
@@ -30,12 +31,12 @@ constexpr NamedMatcher kMatchers[] = {
 constexpr double kPublishedEdgeShare = 0.5;
 constexpr double kEdgeLengthTolerance = 0.5;  // [m]
 
-void addMatches(
-	const SemanticGraph& query, const SemanticGraph& target, const std::vector<Match>& matches,
-	std::vector<std::pair<ObjectId, ObjectId>>& ids)
+std::vector<std::pair<ObjectId, ObjectId>> idsOf(
+	const std::vector<Match>& matches, const SemanticGraph& query, const GraphIndex& target)
 {
-	for (const auto& [j, k] : matches)
-		ids.emplace_back(query.vertices[j].id, target.vertices[k].id);
+	std::vector<std::pair<ObjectId, ObjectId>> ids;
+	for (const auto& [j, k] : matches) ids.emplace_back(query.vertices[j].id, target.id(k));
+	return ids;
 }
 
 void requireUsable(const PosePrior& prior)
@@ -53,15 +54,25 @@ void requireUsable(const PosePrior& prior)
 
 /** Of the matched centres [m]. */
 double rmseOf(
-	const SemanticGraph& query, const SemanticGraph& target, const std::vector<Match>& matches,
+	const SemanticGraph& query, const GraphIndex& target, const std::vector<Match>& matches,
 	const mrpt::poses::CPose3D& T_target_query)
 {
 	double sum = 0;
 	for (const auto& [j, k] : matches)
 		sum +=
-			(T_target_query.composePoint(query.vertices[j].position) - target.vertices[k].position)
-				.sqrNorm();
+			(T_target_query.composePoint(query.vertices[j].position) - target.point(k)).sqrNorm();
 	return std::sqrt(sum / double(std::max<std::size_t>(1, matches.size())));
+}
+
+std::optional<LoopVerdict> tooSmall(const SemanticGraph& query, const GraphIndex& target)
+{
+	if (query.vertices.size() >= 2 && target.size() >= 2) return {};
+	LoopVerdict verdict;
+	verdict.queryObjects = query.vertices.size();
+	verdict.reason = mrpt::format(
+		"%zu objects against %zu: a place needs two on either side", query.vertices.size(),
+		target.size());
+	return verdict;
 }
 
 /** Those that are not this one. */
@@ -139,31 +150,35 @@ void PlaceRecognizer::configureMatcher(
 }
 
 LoopVerdict PlaceRecognizer::publishedVerdict(
-	const SemanticGraph& query, const SemanticGraph& target) const
+	const SemanticGraph& query, const SemanticGraph& target, const GraphIndex& index) const
 {
 	LoopVerdict verdict;
 	verdict.queryObjects = query.vertices.size();
 	const auto matching = matcher_->match(query, target);
-	addMatches(query, target, matching.matches, verdict.matches);
+	verdict.matches = idsOf(matching.matches, query, index);
 	verdict.candidates = verdict.matches;
 	verdict.matchingScore = matching.score;
 	verdict.matchedEdgeShare =
 		matchedEdgeShare(query, target, matching.matches, kEdgeLengthTolerance);
 	std::vector<WeightedPair> pairs;
 	for (const auto& [j, k] : matching.matches)
-		pairs.push_back({query.vertices[j].position, target.vertices[k].position});
+		pairs.push_back({query.vertices[j].position, index.point(k)});
 	const auto pose = fitYawPose(pairs);
 	verdict.hasPose = pose.has_value();
 	if (pose)
 	{
 		verdict.T_target_query = pose->toPose3D();
-		verdict.centreRmse = rmseOf(query, target, matching.matches, verdict.T_target_query);
+		verdict.centreRmse = rmseOf(query, index, matching.matches, verdict.T_target_query);
 	}
 	verdict.reason = mrpt::format(
 		"%.0f %% of the %zu edges matched, needed are %.0f %%", 100 * verdict.matchedEdgeShare,
 		query.edges.size(), 100 * kPublishedEdgeShare);
 	verdict.graphsMatch = verdict.matchedEdgeShare >= kPublishedEdgeShare;
-	if (pose && verdict.graphsMatch) verdict.decision = Decision::Accepted;
+	if (!verdict.graphsMatch) return verdict;
+	if (pose)
+		verdict.decision = Decision::Accepted;
+	else
+		verdict.reason += ", but they leave the pose open: a horizontal distance is needed";
 	return verdict;
 }
 
@@ -171,40 +186,55 @@ LoopVerdict PlaceRecognizer::recognize(
 	const SemanticGraph& query, const SemanticGraph& target, const GraphIndex& targetIndex,
 	const std::optional<PosePrior>& prior) const
 {
+	if (!needsTargetGraph()) return recognize(query, targetIndex, prior);
 	if (prior) requireUsable(*prior);
+	if (const auto verdict = tooSmall(query, targetIndex)) return *verdict;
+	if (options_.matcher == kPublished) return publishedVerdict(query, target, targetIndex);
+
 	LoopVerdict verdict;
 	verdict.queryObjects = query.vertices.size();
-	if (query.vertices.size() < 2 || target.vertices.size() < 2)
-	{
-		verdict.reason = mrpt::format(
-			"%zu objects against %zu: a place needs two on either side", query.vertices.size(),
-			target.vertices.size());
-		return verdict;
-	}
-	if (options_.matcher == kPublished) return publishedVerdict(query, target);
-
 	const PlaceSearch search(query, targetIndex, options_.search);
+	const auto matching = matcher_->match(query, target);
+	verdict.matchingScore = matching.score;
+	judge(
+		query, targetIndex, search, search.places(prior),
+		search.placesOf(matching.matches, prior).found, prior.has_value(), verdict);
+	return verdict;
+}
+
+LoopVerdict PlaceRecognizer::recognize(
+	const SemanticGraph& query, const GraphIndex& target,
+	const std::optional<PosePrior>& prior) const
+{
+	if (needsTargetGraph())
+		throw std::logic_error("place recognition: " + options_.matcher + " needs the graph");
+	if (prior) requireUsable(*prior);
+	if (const auto verdict = tooSmall(query, target)) return *verdict;
+	LoopVerdict verdict;
+	verdict.queryObjects = query.vertices.size();
+	const PlaceSearch search(query, target, options_.search);
 	const auto places = search.places(prior);
-	auto proposed = places.found;
-	if (matcher_)
-	{
-		const auto matching = matcher_->match(query, target);
-		addMatches(query, target, matching.matches, verdict.candidates);
-		verdict.matchingScore = matching.score;
-		proposed = search.placesOf(matching.matches, prior).found;
-	}
+	judge(query, target, search, places, places.found, prior.has_value(), verdict);
+	return verdict;
+}
+
+void PlaceRecognizer::judge(
+	const SemanticGraph& query, const GraphIndex& target, const PlaceSearch& search,
+	const Places& places, const std::vector<Place>& proposed, bool hasPrior,
+	LoopVerdict& verdict) const
+{
 	if (proposed.empty())
 	{
 		verdict.reason = mrpt::format(
 			"no two of the %zu objects are in the map at their distance%s", query.vertices.size(),
-			prior ? " and where the prior allows" : "");
-		return verdict;
+			hasPrior ? " and where the prior allows" : "");
+		return;
 	}
 
 	const Place& best = proposed.front();
 	const auto rivals = rivalsOf(best, places.found, search, options_.search.rivalDistance);
-	addMatches(query, target, best.matches, verdict.matches);
-	if (!matcher_) verdict.candidates = verdict.matches;
+	verdict.matches = idsOf(best.matches, query, target);
+	verdict.candidates = verdict.matches;
 	verdict.hasPose = true;
 	verdict.T_target_query = best.T_target_query;
 	verdict.evidence = best.evidence;
@@ -244,7 +274,6 @@ LoopVerdict PlaceRecognizer::recognize(
 	else
 		verdict.reason += mrpt::format(", needed is %.2f", options_.minProbability);
 	verdict.graphsMatch = verdict.decision == Decision::Accepted;
-	return verdict;
 }
 
 }  // namespace semloop

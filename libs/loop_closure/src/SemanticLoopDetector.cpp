@@ -91,11 +91,18 @@ LoopVerdict SemanticLoopDetector::detect(const LoopQuery& query)
 	const CObjectMap& map = query.map;
 	LoopVerdict verdict;
 	const auto queryGraph = SemanticGraph::fromMap(map, query.query, options_.minObservations);
-	const auto targetGraph = SemanticGraph::fromMap(map, query.target, options_.minObservations);
 	try
 	{
-		verdict =
-			recognizer_.recognize(queryGraph, targetGraph, GraphIndex(targetGraph), query.prior);
+		if (recognizer_.needsTargetGraph())
+		{
+			const auto target =
+				SemanticGraph::fromMap(map, query.target, options_.minObservations);
+			verdict = recognizer_.recognize(queryGraph, target, GraphIndex(target), query.prior);
+		}
+		else
+			verdict = recognizer_.recognize(
+				queryGraph, target_.update(map, query.target, options_.minObservations),
+				query.prior);
 	}
 	catch (const InputError& error)  // graphs that the matcher cannot take
 	{

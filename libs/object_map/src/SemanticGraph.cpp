@@ -45,6 +45,11 @@ SemanticGraph graphOf(const CObjectMap& map, int minObservations, const Wanted& 
 }
 }  // namespace
 
+GraphVertex SemanticGraph::vertexFrom(const CObjectMap& map, ObjectId id)
+{
+	return vertexOf(map, map.object(id));
+}
+
 bool SemanticGraph::hasEdge(std::size_t a, std::size_t b) const
 {
 	return edges.count(std::minmax(a, b)) > 0;

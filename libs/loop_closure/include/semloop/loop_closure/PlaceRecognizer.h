@@ -55,14 +55,27 @@ public:
 	/** The matcher's own keys, if it is a module. */
 	void configureMatcher(const mrpt::config::CConfigFileBase& config, const std::string& section);
 
+	/** Whether a matcher needs the target's graph; pairs of candidates need the index only. */
+	bool needsTargetGraph() const { return matcher_ != nullptr; }
+
 	/** Verdicts are by ids. Throws InputError when a graph cannot be used (see GraphIndex), or the prior: a pose that is
 	 *  not finite, a sigma that is not finite and above 0. */
 	LoopVerdict recognize(
 		const SemanticGraph& query, const SemanticGraph& target, const GraphIndex& targetIndex,
 		const std::optional<PosePrior>& prior = {}) const;
+	/** The same without a matcher; throws std::logic_error when needsTargetGraph(). */
+	LoopVerdict recognize(
+		const SemanticGraph& query, const GraphIndex& target,
+		const std::optional<PosePrior>& prior = {}) const;
 
 private:
-	LoopVerdict publishedVerdict(const SemanticGraph& query, const SemanticGraph& target) const;
+	LoopVerdict publishedVerdict(
+		const SemanticGraph& query, const SemanticGraph& target, const GraphIndex& index) const;
+	/** What to say of the places that were proposed, best first, among all that were found. */
+	void judge(
+		const SemanticGraph& query, const GraphIndex& target, const PlaceSearch& search,
+		const Places& places, const std::vector<Place>& proposed, bool hasPrior,
+		LoopVerdict& verdict) const;
 
 	PlaceRecognizerOptions options_;
 	GraphMatcher::Ptr matcher_;  //!< null: pairwise

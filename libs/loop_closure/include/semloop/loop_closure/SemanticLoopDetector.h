@@ -2,6 +2,7 @@
 
 #include <semloop/config/Options.h>
 #include <semloop/loop_closure/LoopDetector.h>
+#include <semloop/loop_closure/MapIndex.h>
 #include <semloop/loop_closure/ObjectAligner.h>
 #include <semloop/loop_closure/PlaceRecognizer.h>
 
@@ -53,6 +54,7 @@ public:
 private:
 	SemanticLoopDetectorOptions options_;
 	PlaceRecognizer recognizer_;
+	MapIndex target_;
 };
 
 }  // namespace semloop

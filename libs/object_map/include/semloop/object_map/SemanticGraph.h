@@ -41,6 +41,9 @@ struct SemanticGraph
 		const CObjectMap& map, const std::set<ObjectId>& subset, int minObservations = 1);
 	static SemanticGraph fromMap(const CObjectMap& map, int minObservations = 1);
 
+	/** Throws std::out_of_range for an object that the map does not have. */
+	static GraphVertex vertexFrom(const CObjectMap& map, ObjectId id);
+
 	/** Format semloop.graph/1 (doc/file-formats.md). Throws InputError naming file and place. */
 	static SemanticGraph load(const std::string& path);
 	/** Objects by id, numbers rounded to 1e-6; of several embeddings the direction of their mean.
