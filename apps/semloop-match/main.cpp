@@ -86,6 +86,10 @@ int run(int argc, char** argv)
 	Text prior(
 		"", "prior", "What odometry claims for T_target_query: 16 numbers, row by row.", false, "",
 		"NUMBERS", line);
+	Text confusion(
+		"", "confusion",
+		"How labels are mistaken for each other, as semloop-learn-confusion writes it.", false, "",
+		"FILE", line);
 	TCLAP::UnlabeledMultiArg<std::string> graphs(
 		"graphs", "QUERY and TARGET: semantic graphs (.json) or object maps (.objmap).", false,
 		"QUERY TARGET", line);
@@ -93,7 +97,9 @@ int run(int argc, char** argv)
 
 	PlaceRecognizerOptions options;
 	options.matcher = matcher.getValue();
-	const PlaceRecognizer recognizer(options, "--matcher");
+	PlaceRecognizer recognizer(options, "--matcher");
+	if (confusion.isSet())
+		recognizer.setConfusionMatrix(ConfusionMatrix::load(confusion.getValue()));
 	if (batch.isSet())
 	{
 		if (!graphs.getValue().empty() || prior.isSet())

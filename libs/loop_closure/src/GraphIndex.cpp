@@ -38,6 +38,23 @@ Eigen::VectorXf meanEmbedding(const GraphVertex& vertex)
 	return {};
 }
 
+/** Sums to 1; empty when there are no scores or one label has all. */
+std::map<std::string, double> labelShares(const GraphVertex& vertex)
+{
+	double sum = 0;
+	for (const auto& [label, score] : vertex.labelScores)
+	{
+		if (!(score >= 0 && score <= 1))
+			fail(vertex, "the score of its label '" + label + "' is not in [0, 1]; correct it");
+		sum += score;
+	}
+	std::map<std::string, double> shares;
+	for (const auto& [label, score] : vertex.labelScores)
+		if (score > 0) shares[label] = score / sum;
+	if (shares.size() == 1 && shares.begin()->first == vertex.label) shares.clear();
+	return shares;
+}
+
 bool isBefore(const GraphIndex::Entry& a, const GraphIndex::Entry& b)
 {
 	return std::tie(a.x, a.vertex) < std::tie(b.x, b.vertex);
@@ -62,12 +79,14 @@ void GraphIndex::remove(std::size_t number)
 	const std::size_t last = size() - 1;
 	eraseEntry(number);
 	if (hasEmbedding_[number]) --embedded_;
+	if (!shares_[number].empty()) --uncertain_;
 	if (number != last)
 	{
 		eraseEntry(last);
 		ids_[number] = ids_[last];
 		points_[number] = points_[last];
 		labelOf_[number] = labelOf_[last];
+		std::swap(shares_[number], shares_[last]);
 		hasEmbedding_[number] = hasEmbedding_[last];
 		if (embeddings_.size() > 0)
 			embeddings_.col(Eigen::Index(number)) = embeddings_.col(Eigen::Index(last));
@@ -75,6 +94,7 @@ void GraphIndex::remove(std::size_t number)
 	ids_.pop_back();
 	points_.pop_back();
 	labelOf_.pop_back();
+	shares_.pop_back();
 	hasEmbedding_.pop_back();
 	if (number != last) insertEntry(number);
 }
@@ -87,6 +107,7 @@ void GraphIndex::append(const GraphVertex& vertex)
 		fail(vertex, "its position is not finite; leave it out");
 	const Eigen::VectorXf embedding = meanEmbedding(vertex);
 	const bool isSeen = embedding.size() > 0;
+	const auto shares = labelShares(vertex);
 	if (isSeen && embedded_ > 0 && embedding.size() != embeddings_.rows())
 		fail(
 			vertex, "its embedding has " + std::to_string(embedding.size()) +
@@ -110,12 +131,25 @@ void GraphIndex::append(const GraphVertex& vertex)
 	}
 	embedded_ += isSeen;
 
-	const auto [place, isNew] = numbers_.emplace(vertex.label, int(byLabel_.size()));
-	if (isNew) byLabel_.emplace_back();
 	ids_.push_back(vertex.id);
 	points_.push_back(p);
-	labelOf_.push_back(place->second);
+	labelOf_.push_back(numberOf(vertex.label));
+	shares_.emplace_back();
+	for (const auto& [label, share] : shares)
+		shares_.back().push_back({numberOf(label), float(share)});
+	uncertain_ += !shares.empty();
 	hasEmbedding_.push_back(isSeen);
+}
+
+int GraphIndex::numberOf(const std::string& label)
+{
+	const auto [place, isNew] = numbers_.emplace(label, int(byLabel_.size()));
+	if (isNew)
+	{
+		byLabel_.emplace_back();
+		names_.push_back(label);
+	}
+	return place->second;
 }
 
 GraphIndex::Entry GraphIndex::entryOf(std::size_t vertex) const

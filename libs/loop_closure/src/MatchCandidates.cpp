@@ -116,10 +116,63 @@ private:
 	Spread ofLabel_{0.5f, 0.2f}, ofOthers_{0.0f, 0.3f};
 	float usual_ = 1;
 };
+
+/** What labels say: p(z_j | z_k) / p(z_j) for the distributions z over labels of two objects, p(l) their
+ *  share in the map. Linear in both distributions. */
+class LabelRatios
+{
+public:
+	LabelRatios(
+		const GraphIndex& query, const GraphIndex& target, const LabelAgreement& agreement)
+		: query_(query)
+	{
+		const std::size_t labels = target.labels();
+		const double all = double(target.size() + labels + 1);
+		for (int a = 0; a < query.labelNumbers(); ++a)
+		{
+			const std::string& name = query.labelName(a);
+			const int known = target.labelNumber(name);
+			const double alike =
+				known == GraphIndex::kNoLabel ? 0 : double(target.ofLabel(known).size());
+			auto& ratios = ofLabel_.emplace_back();
+			for (int b = 0; b < target.labelNumbers(); ++b)
+				ratios.push_back(
+					agreement.probability(name, target.labelName(b), labels) * all / (alike + 1));
+		}
+	}
+
+	/** Of an object of the query, for each label of the map. */
+	std::vector<double> ofLabels(std::size_t query) const
+	{
+		const auto& shares = query_.shares(query);
+		if (shares.empty()) return ofLabel_[std::size_t(query_.labelOf(query))];
+		std::vector<double> sum(ofLabel_[0].size(), 0.0);
+		for (const auto& [label, share] : shares)
+			for (std::size_t b = 0; b < sum.size(); ++b)
+				sum[b] += double(share) * ofLabel_[std::size_t(label)][b];
+		return sum;
+	}
+	/** Of an object of the map, given those of its labels. */
+	static double of(
+		std::size_t vertex, const GraphIndex& target, const std::vector<double>& ofLabels)
+	{
+		const auto& shares = target.shares(vertex);
+		if (shares.empty()) return ofLabels[std::size_t(target.labelOf(vertex))];
+		double sum = 0;
+		for (const auto& [label, share] : shares)
+			sum += double(share) * ofLabels[std::size_t(label)];
+		return sum;
+	}
+
+private:
+	const GraphIndex& query_;
+	std::vector<std::vector<double>> ofLabel_;  //!< query's label, map's label
+};
 }  // namespace
 
 MatchCandidates::MatchCandidates(
-	const SemanticGraph& query, const GraphIndex& target, const PlaceSearchOptions& options)
+	const SemanticGraph& query, const GraphIndex& target, const LabelAgreement& agreement,
+	const PlaceSearchOptions& options)
 	: candidates_(query.vertices.size())
 {
 	const GraphIndex own(query);
@@ -132,33 +185,35 @@ MatchCandidates::MatchCandidates(
 	measure();
 
 	const Looks looks(own, target, labels, float(options.sameModelShare));
-	const auto labelCount = double(target.labels());
+	const LabelRatios ratios(own, target, agreement);
 	for (std::size_t j = 0; j < own.size(); ++j)
 	{
 		const bool isSeen = looks.areKnown() && own.hasEmbedding(j);
-		const bool isKnown = labels[j] != GraphIndex::kNoLabel;
-		const double alike = isKnown ? double(target.ofLabel(labels[j]).size()) : 0;
-		const double share = (alike + 1) / (double(target.size()) + labelCount + 1);
-		const auto add = [&](const GraphIndex::Entry& entry, double labelRatio, bool sameLabel)
-		{
-			auto weight = float(std::log(labelRatio / share));
-			if (isSeen && target.hasEmbedding(entry.vertex))
-				weight += looks.evidence(looks.similarity(j, entry.vertex), sameLabel);
-			if (weight > kLeastWeight)
-				candidates_[j].push_back({entry.x, entry.y, entry.z, weight, entry.vertex});
-		};
-		if (isKnown)
-			for (const auto& entry : target.ofLabel(labels[j]))
-				add(entry, options.labelAccuracy, true);
-		if (!isSeen) continue;
-		const std::size_t sameLabel = candidates_[j].size();
-		const double mistaken = (1 - options.labelAccuracy) / std::max(1.0, labelCount - 1);
+		const auto ratioOf = ratios.ofLabels(j);
+		bool isMixed = false;
 		for (int label = 0; label < target.labelNumbers(); ++label)
-			if (label != labels[j])
-				for (const auto& entry : target.ofLabel(label))
-					if (looks.similarity(j, entry.vertex) > looks.leastOfOtherLabel())
-						add(entry, mistaken, false);
-		if (candidates_[j].size() > sameLabel)
+		{
+			const bool sameLabel = label == labels[j];
+			// Labels that speak against it, none in doubt, and nothing to look at.
+			if (!sameLabel && !isSeen && !target.hasUncertainLabels() &&
+				ratioOf[std::size_t(label)] <= 1)
+				continue;
+			const std::size_t before = candidates_[j].size();
+			for (const auto& entry : target.ofLabel(label))
+			{
+				const double ratio = LabelRatios::of(entry.vertex, target, ratioOf);
+				const bool looksAlike =
+					isSeen && looks.similarity(j, entry.vertex) > looks.leastOfOtherLabel();
+				if (!sameLabel && ratio <= 1 && !looksAlike) continue;
+				auto weight = float(std::log(ratio));
+				if (isSeen && target.hasEmbedding(entry.vertex))
+					weight += looks.evidence(looks.similarity(j, entry.vertex), sameLabel);
+				if (weight > kLeastWeight)
+					candidates_[j].push_back({entry.x, entry.y, entry.z, weight, entry.vertex});
+			}
+			isMixed = isMixed || (before > 0 && candidates_[j].size() > before);
+		}
+		if (isMixed)
 			std::sort(
 				candidates_[j].begin(), candidates_[j].end(),
 				[](const Candidate& a, const Candidate& b)

@@ -22,7 +22,8 @@ public:
 
 	/** Throws InputError as GraphIndex does, and when the embeddings of query and map differ in length. */
 	MatchCandidates(
-		const SemanticGraph& query, const GraphIndex& target, const PlaceSearchOptions& options);
+		const SemanticGraph& query, const GraphIndex& target, const LabelAgreement& agreement,
+		const PlaceSearchOptions& options);
 
 	std::size_t size() const { return points_.size(); }
 	const mrpt::math::TPoint3D& point(std::size_t query) const { return points_[query]; }

@@ -121,7 +121,7 @@ std::vector<std::string> PlaceRecognizer::matcherNames()
 }
 
 PlaceRecognizer::PlaceRecognizer(const PlaceRecognizerOptions& options, const std::string& key)
-	: options_(options)
+	: options_(options), labelAgreement_(options.search.labelAccuracy)
 {
 	std::string names;
 	for (const auto& matcher : kMatchers)
@@ -147,6 +147,11 @@ void PlaceRecognizer::configureMatcher(
 	const mrpt::config::CConfigFileBase& config, const std::string& section)
 {
 	if (matcher_) matcher_->configure(config, section);
+}
+
+void PlaceRecognizer::setConfusionMatrix(const ConfusionMatrix& confusion)
+{
+	labelAgreement_ = LabelAgreement(options_.search.labelAccuracy, confusion);
 }
 
 LoopVerdict PlaceRecognizer::publishedVerdict(
@@ -193,7 +198,7 @@ LoopVerdict PlaceRecognizer::recognize(
 
 	LoopVerdict verdict;
 	verdict.queryObjects = query.vertices.size();
-	const PlaceSearch search(query, targetIndex, options_.search);
+	const PlaceSearch search(query, targetIndex, labelAgreement_, options_.search);
 	const auto matching = matcher_->match(query, target);
 	verdict.matchingScore = matching.score;
 	judge(
@@ -212,7 +217,7 @@ LoopVerdict PlaceRecognizer::recognize(
 	if (const auto verdict = tooSmall(query, target)) return *verdict;
 	LoopVerdict verdict;
 	verdict.queryObjects = query.vertices.size();
-	const PlaceSearch search(query, target, options_.search);
+	const PlaceSearch search(query, target, labelAgreement_, options_.search);
 	const auto places = search.places(prior);
 	judge(query, target, search, places, places.found, prior.has_value(), verdict);
 	return verdict;

@@ -149,9 +149,9 @@ class PlaceSearch::Impl
 {
 public:
 	Impl(
-		const SemanticGraph& query, const GraphIndex& itsTarget,
+		const SemanticGraph& query, const GraphIndex& itsTarget, const LabelAgreement& agreement,
 		const PlaceSearchOptions& itsOptions)
-		: options(itsOptions), target(itsTarget), candidates(query, target, options)
+		: options(itsOptions), target(itsTarget), candidates(query, target, agreement, options)
 	{
 		for (std::size_t j = 0; j < candidates.size(); ++j)
 			if (!candidates.of(j).empty()) probes.push_back(j);
@@ -331,7 +331,13 @@ private:
 
 PlaceSearch::PlaceSearch(
 	const SemanticGraph& query, const GraphIndex& target, const PlaceSearchOptions& options)
-	: impl_(std::make_unique<Impl>(query, target, options))
+	: PlaceSearch(query, target, LabelAgreement(options.labelAccuracy), options)
+{
+}
+PlaceSearch::PlaceSearch(
+	const SemanticGraph& query, const GraphIndex& target, const LabelAgreement& agreement,
+	const PlaceSearchOptions& options)
+	: impl_(std::make_unique<Impl>(query, target, agreement, options))
 {
 }
 PlaceSearch::~PlaceSearch() = default;

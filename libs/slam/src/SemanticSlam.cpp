@@ -104,6 +104,7 @@ void SemanticSlam::adoptLabels(const CObservationInstances& instances)
 											 : ConfusionMatrix::load(file);
 	if (!(confusion.labels() == labels))
 		throw InputError(file + ": its labels are not those of the instances; learn it anew");
+	if (!file.empty()) loopDetector_->setConfusionMatrix(confusion);
 	matchingCost_->setConfusionMatrix(std::move(confusion));
 }
 

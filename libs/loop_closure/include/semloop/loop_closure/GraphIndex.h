@@ -14,7 +14,7 @@ namespace semloop
  *  with how frequent the label is and, in one matrix, what they look like.
  *
  *  What takes a vertex in throws InputError, naming it, with nothing changed, when its position or an embedding
- *  is not finite or embeddings differ in length. */
+ *  is not finite embeddings differ in length, or a label score is not in [0, 1]. */
 class GraphIndex
 {
 public:
@@ -43,7 +43,16 @@ public:
 	int labelNumber(const std::string& label) const;
 	int labelNumbers() const { return int(byLabel_.size()); }
 	std::size_t labels() const;  //!< that some vertex has
+	const std::string& labelName(int number) const { return names_[std::size_t(number)]; }
 	int labelOf(std::size_t vertex) const { return labelOf_[vertex]; }
+	struct LabelShare
+	{
+		int label;
+		float share;  //!< in (0, 1], the sum of a vertex's is 1
+	};
+	/** Of a vertex with label scores; empty when its label is certain. */
+	const std::vector<LabelShare>& shares(std::size_t vertex) const { return shares_[vertex]; }
+	bool hasUncertainLabels() const { return uncertain_ > 0; }
 	/** By x. */
 	const std::vector<Entry>& ofLabel(int number) const { return byLabel_[number]; }
 
@@ -60,6 +69,7 @@ public:
 
 private:
 	void append(const GraphVertex& vertex);
+	int numberOf(const std::string& label);
 	Entry entryOf(std::size_t vertex) const;
 	void insertEntry(std::size_t vertex);
 	void eraseEntry(std::size_t vertex);
@@ -67,7 +77,10 @@ private:
 	std::vector<ObjectId> ids_;
 	std::vector<mrpt::math::TPoint3D> points_;
 	std::map<std::string, int, std::less<>> numbers_;
+	std::vector<std::string> names_;
 	std::vector<int> labelOf_;
+	std::vector<std::vector<LabelShare>> shares_;
+	std::size_t uncertain_ = 0;  //!< vertices with shares
 	std::vector<std::vector<Entry>> byLabel_;
 	Eigen::MatrixXf embeddings_;  //!< with columns to spare
 	std::vector<bool> hasEmbedding_;

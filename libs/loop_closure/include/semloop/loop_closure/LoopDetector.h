@@ -3,6 +3,7 @@
 #include <mrpt/config/CConfigFileBase.h>
 #include <mrpt/poses/CPose3D.h>
 #include <mrpt/rtti/CObject.h>
+#include <semloop/association/ConfusionMatrix.h>
 #include <semloop/loop_closure/GraphMatcher.h>
 #include <semloop/loop_closure/PosePrior.h>
 #include <semloop/observations/RgbdFrame.h>
@@ -92,6 +93,8 @@ class LoopDetector : public mrpt::rtti::CObject
 public:
 	virtual void configure(
 		const mrpt::config::CConfigFileBase& config, const std::string& section) = 0;
+	/** How the network mistakes labels for each other, when that is known; before the first question. */
+	virtual void setConfusionMatrix(const ConfusionMatrix& /*confusion*/) {}
 	/** Every frame that has instances, in order: detectors of appearance remember it. The images may be
 	 *  gone after the call. */
 	virtual void addFrame(std::size_t /*frame*/, const RgbdFrame& /*images*/) {}

@@ -55,6 +55,9 @@ public:
 	/** The matcher's own keys, if it is a module. */
 	void configureMatcher(const mrpt::config::CConfigFileBase& config, const std::string& section);
 
+	/** How labels are mistaken for each other; label_accuracy stands for it until then. */
+	void setConfusionMatrix(const ConfusionMatrix& confusion);
+
 	/** Whether a matcher needs the target's graph; pairs of candidates need the index only. */
 	bool needsTargetGraph() const { return matcher_ != nullptr; }
 
@@ -78,6 +81,7 @@ private:
 		LoopVerdict& verdict) const;
 
 	PlaceRecognizerOptions options_;
+	LabelAgreement labelAgreement_;
 	GraphMatcher::Ptr matcher_;  //!< null: pairwise
 };
 

@@ -4,6 +4,7 @@
 #include <semloop/config/Options.h>
 #include <semloop/loop_closure/GraphIndex.h>
 #include <semloop/loop_closure/GraphMatcher.h>
+#include <semloop/loop_closure/LabelAgreement.h>
 #include <semloop/loop_closure/PosePrior.h>
 
 #include <memory>
@@ -59,7 +60,8 @@ struct Places
  *      e_jk(T) = ln P_m / (1 - P_m) + ln V K_sigma(T q_j - t_k) + ln p(l_j | l_k) / p(l_j)
  *                + ln p(s_jk | same) / p(s_jk | different),
  *  K_sigma = (1 - b) N(0, sigma^2 I) + b N(0, 9 sigma^2 I) for centres of objects that were seen in
- *  part; l labels, p(l) their share in the map; s the similarity of the embeddings, its distribution
+ *  part; l labels, p(l_j | l_k) by LabelAgreement, p(l) their share in the map, both averaged over the label
+ *  scores of objects that have some; s the similarity of the embeddings, its distribution
  *  among different objects fitted to all pairs, that of the same object to the best of each query object.
  *  sigma is not known: the best of a range is taken. The evidence of a place is
  *      E(T) = sum of e_jk over the best one-to-one matches + ln p(T) + ln (2 pi)^2 sigma^4 / (n^2 R),
@@ -72,13 +74,17 @@ struct Places
  *  Two matches make a pose: those whose horizontal and vertical distances agree are tried, all of them up
  *  to 16 objects in the query, and chosen ones beyond and in maps of thousands: any place that explains half of the
  *  objects is met by several pairs. Nothing is left to chance; where thousands of objects look alike the search ends
- *  before it is complete, and says so. Objects of another label are candidates when they look the same. */
+ *  before it is complete, and says so. Objects of another label are candidates when they look the same or their label scores speak for it. */
 class PlaceSearch
 {
 public:
+	/** Labels agree as label_accuracy says. */
 	PlaceSearch(
 		const SemanticGraph& query, const GraphIndex& target,
 		const PlaceSearchOptions& options = {});
+	PlaceSearch(
+		const SemanticGraph& query, const GraphIndex& target, const LabelAgreement& agreement,
+		const PlaceSearchOptions& options);
 	~PlaceSearch();
 	PlaceSearch(const PlaceSearch&) = delete;
 	PlaceSearch& operator=(const PlaceSearch&) = delete;

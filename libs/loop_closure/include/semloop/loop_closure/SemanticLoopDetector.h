@@ -46,6 +46,10 @@ public:
 	/** Throws as configure() does. */
 	explicit SemanticLoopDetector(const SemanticLoopDetectorOptions& options);
 
+	void setConfusionMatrix(const ConfusionMatrix& confusion) override
+	{
+		recognizer_.setConfusionMatrix(confusion);
+	}
 	LoopVerdict detect(const LoopQuery& query) override;
 
 	const SemanticLoopDetectorOptions& options() const { return options_; }
