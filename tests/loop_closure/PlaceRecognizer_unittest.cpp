@@ -236,6 +236,31 @@ TEST(PlaceRecognizer, APriorWiderThanTheMapSaysWhatNoPriorSays)
 	EXPECT_EQ(vague.reason, none.reason);
 }
 
+TEST(PlaceRecognizer, APlaceFarFromThePriorIsRefusedUnlessAnyDistanceWillDo)
+{
+	const auto room = randomRoom(10, 8, 2);
+	const auto target = moved(room, yawPose(0.6, 0, 0, 0));
+	PosePrior prior;
+	prior.sigmaXY = 0.1;
+	EXPECT_THAT(
+		recognized(room, target, "pairwise", prior).reason, HasSubstr("6.0 standard deviations"));
+	PlaceRecognizerOptions options;
+	options.maxPriorSigmas = 0;
+	EXPECT_EQ(
+		PlaceRecognizer(options).recognize(room, GraphIndex(target), prior).decision,
+		Decision::Accepted);
+}
+
+TEST(PlaceRecognizer, PairsOfCandidatesNeedTheIndexOnlyMatchersTheGraph)
+{
+	const auto room = randomRoom(10, 8, 2);
+	EXPECT_EQ(
+		PlaceRecognizer().recognize(room, GraphIndex(room)).reason, recognized(room, room).reason);
+	PlaceRecognizerOptions options;
+	options.matcher = "clique";
+	EXPECT_THROW(PlaceRecognizer(options).recognize(room, GraphIndex(room)), std::logic_error);
+}
+
 TEST(PlaceRecognizer, APriorThatIsNoneIsNamed)
 {
 	const auto room = fourObjects();

@@ -253,6 +253,39 @@ TEST(PlaceSearch, HalfOfADeskIsEnoughAmongThousandsOfObjects)
 	}
 }
 
+TEST(PlaceSearch, AQueryThatIsTurnedHasTheSamePlacesInALargeMap)
+{
+	// So many candidates that not all of their pairs are tried.
+	std::mt19937 random(5);
+	std::uniform_real_distribution<double> unit(0, 1);
+	SemanticGraph target, query;
+	for (ObjectId id = 0; id < 1600; ++id)
+		target.vertices.push_back(vertex(
+			id, "label" + std::to_string(id % 8), 40 * unit(random), 40 * unit(random),
+			2 * unit(random)));
+	for (const auto& v : target.vertices)
+		if (std::hypot(v.position.x - 20, v.position.y - 20) < 2.2) query.vertices.push_back(v);
+	ASSERT_GE(query.vertices.size(), 12u);
+	const auto expected = placesOf(query, target).found;
+	ASSERT_FALSE(expected.empty());
+	for (const double yaw : {0.7, 2.0, -2.6})
+	{
+		const auto places = placesOf(moved(query, yawPose(3, -8, 0, yaw)), target).found;
+		ASSERT_EQ(places.size(), expected.size());
+		for (std::size_t i = 0; i < places.size(); ++i)
+			EXPECT_NEAR(places[i].evidence, expected[i].evidence, 0.01);
+	}
+}
+
+TEST(PlaceSearch, MatchesOneAboveTheOtherProposeNothing)
+{
+	const auto pile = complete({vertex(0, "box", 0, 0, 0), vertex(1, "cup", 0, 0, 1)});
+	auto apart = pile;
+	apart.vertices[1].position.x = 0.4;
+	const GraphIndex index(apart);
+	EXPECT_TRUE(PlaceSearch(pile, index).placesOf(identityMatches(2)).found.empty());
+}
+
 TEST(PlaceSearch, ThousandsOfLookalikesEndTheSearchBeforeItIsComplete)
 {
 	SemanticGraph field;

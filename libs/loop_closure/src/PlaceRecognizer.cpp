@@ -104,7 +104,7 @@ void PlaceRecognizerOptions::describe(OptionFields& fields)
 		"standard deviation of an accepted place's yaw [deg]");
 	fields.number(
 		"max_prior_sigmas", maxPriorSigmas, 0, 1000,
-		"distance of an accepted place from the prior [standard deviations]");
+		"distance of an accepted place from the prior [standard deviations]; 0: any");
 	search.describe(fields);
 }
 
@@ -255,7 +255,7 @@ void PlaceRecognizer::judge(
 
 	if (int(best.matches.size()) < options_.minMatches)
 		verdict.reason += mrpt::format(", needed are %d objects", options_.minMatches);
-	else if (best.priorSigmas > options_.maxPriorSigmas)
+	else if (options_.maxPriorSigmas > 0 && best.priorSigmas > options_.maxPriorSigmas)
 		verdict.reason += mrpt::format(
 			", but it is %.1f standard deviations from the prior, allowed are %.1f",
 			best.priorSigmas, options_.maxPriorSigmas);

@@ -92,6 +92,7 @@ std::optional<YawPose> poseOfTwo(
 	const TPoint3D& q1, const TPoint3D& q2, double lengthQ, const TPoint3D& t1, const TPoint3D& t2)
 {
 	const auto dq = q2 - q1, dt = t2 - t1;
+	if (lengthQ < kMinBaseline) return {};
 	if (std::abs(dq.z - dt.z) > kVerticalGate) return {};
 	const double squaredT = dt.x * dt.x + dt.y * dt.y;
 	if (squaredT > mrpt::square(lengthQ + kHorizontalGate) ||
@@ -175,7 +176,8 @@ public:
 
 private:
 	/** All, or in a large map those within groups of four probes: of more objects of one place than there are
-	 *  groups two are in one. Neighbours are in different groups, for a short pair tells little of the yaw. */
+	 *  groups two are in one. A group has objects at different distances from the centroid, for a short pair
+	 *  tells little of the yaw, and a query that is turned has the same groups. */
 	void makePairs()
 	{
 		double work = 0;
@@ -192,7 +194,10 @@ private:
 		std::stable_sort(
 			byPlace.begin(), byPlace.end(),
 			[&](std::size_t a, std::size_t b)
-			{ return candidates.point(a).x < candidates.point(b).x; });
+			{
+				return horizontalDistance(candidates.point(a), candidates.centroid()) <
+					   horizontalDistance(candidates.point(b), candidates.centroid());
+			});
 		std::vector<std::size_t> group(candidates.size());
 		for (std::size_t i = 0; i < byPlace.size(); ++i) group[byPlace[i]] = i % groups;
 		pairs.erase(

@@ -4,6 +4,8 @@
 #include <semloop/config/ModuleFactory.h>
 #include <semloop/loop_closure/ObjectAligner.h>
 #include <semloop/loop_closure/SemanticLoopDetector.h>
+#include <semloop/loop_closure/CliqueMatcher.h>
+#include <semloop/loop_closure/DescriptorMatchers.h>
 #include <semloop/loop_closure/SpectralMatcher.h>
 #include <semloop/object_map/CObjectMap.h>
 #include <semloop/odometry/OpenCvOdometry.h>
@@ -174,8 +176,16 @@ std::string configurationReference()
 	page +=
 		table("loop_detection", "of semloop::SemanticLoopDetector", SemanticLoopDetectorOptions());
 	page += table(
-		"graph_matching", "of semloop::SpectralMatcher, when the matcher is spectral, Eq. (4)-(6)",
+		"graph_matching",
+		"of semloop::SpectralMatcher, when the matcher is spectral or spectral-verified, Eq. "
+		"(4)-(6)",
 		SpectralMatcherOptions());
+	page += table(
+		"graph_matching", "of semloop::CliqueMatcher, when the matcher is clique",
+		CliqueMatcherOptions());
+	page += table(
+		"graph_matching", "of semloop::RandomWalkMatcher, when the matcher is random-walk",
+		RandomWalkMatcherOptions());
 	page += table("alignment", "of the matched objects' surfaces", ObjectAlignerOptions());
 	page += table("pose_graph", "of semloop::CeresPoseGraph, Eq. (7)", CeresPoseGraphOptions());
 	page +=

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <mrpt/config/CConfigFileBase.h>
+#include <mrpt/core/bits_math.h>
 #include <semloop/config/Options.h>
 #include <semloop/loop_closure/GraphIndex.h>
 #include <semloop/loop_closure/GraphMatcher.h>
@@ -18,8 +19,8 @@ struct PlaceRecognizerOptions : Options
 	std::string matcher = "pairwise";
 	double minProbability = 0.9;  //!< of an accepted place
 	int minMatches = 3;
-	double maxYawSigma = 0.15;  //!< of an accepted pose [rad]
-	double maxPriorSigmas = 5;  //!< further from the prior no place is accepted
+	double maxYawSigma = mrpt::DEG2RAD(8.6);  //!< of an accepted pose [rad]
+	double maxPriorSigmas = 5;  //!< further from the prior no place is accepted; 0: any
 	PlaceSearchOptions search;
 
 	/** Public: the loop detector has these keys in its own section. */

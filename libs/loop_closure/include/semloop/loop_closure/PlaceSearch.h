@@ -48,7 +48,7 @@ struct Places
 {
 	std::vector<Place>
 		found;  //!< best first, no two nearer than rivalDistance; at least two matches each
-	/** Every pose was tried: of those that are not among the found none is worth anything. */
+	/** The search came to its end: no pose that most of the query's objects agree on is missing. */
 	bool complete = true;
 };
 
