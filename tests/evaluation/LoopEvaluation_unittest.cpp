@@ -56,6 +56,26 @@ TEST_F(LoopEvaluationTest, WrongPairsAreAFalsePositiveEvenWhereALoopIs)
 	EXPECT_EQ(result.recall, 0.0);
 }
 
+TEST_F(LoopEvaluationTest, AClaimByImagesIsJudgedByItsTwoFrames)
+{
+	LoopAttempt claim = attemptAt(620, 550, {});
+	claim.cameras = {{600, 0}};
+	const auto byImages = evaluateLoops({claim}, frames);
+	EXPECT_EQ(byImages.detected.truePositives, 1u);
+	EXPECT_EQ(byImages.verified.truePositives, 1u);
+	EXPECT_EQ(byImages.recall, 1.0);
+	// Other objects in the earlier frame; too near in time; taken back after the images agreed.
+	claim.cameras = {{600, 300}};
+	EXPECT_EQ(evaluateLoops({claim}, frames).verified.falsePositives, 1u);
+	LoopRule rule;
+	rule.framesApart = 600;
+	claim.cameras = {{600, 0}};
+	EXPECT_EQ(evaluateLoops({claim}, frames, rule).verified.falsePositives, 1u);
+	claim.accepted = false;
+	EXPECT_EQ(evaluateLoops({claim}, frames).detected.truePositives, 1u);
+	EXPECT_EQ(evaluateLoops({claim}, frames).verified.detections, 0u);
+}
+
 TEST_F(LoopEvaluationTest, MoreThanHalfOfThePairsDecide)
 {
 	const LoopAttempt::IdPairs half{{11, 10}, {21, 50}}, most{{11, 10}, {21, 20}, {31, 60}};
@@ -187,7 +207,14 @@ TEST(LoopAttempts, AreReadFromTheLines)
 	EXPECT_TRUE(attempts[0].accepted);
 	EXPECT_EQ(attempts[0].candidates, (LoopAttempt::IdPairs{{4, 1}, {5, 2}}));
 	EXPECT_EQ(attempts[0].matches, (LoopAttempt::IdPairs{{4, 1}}));
+	EXPECT_TRUE(attempts[0].cameras.empty());
 	EXPECT_TRUE(readLoopAttempts(folder.write("none.jsonl", "")).empty());
+
+	std::string byImages = oneLine(kLine);
+	byImages.insert(1, R"("cameras": [[600, 20, 31]], )");
+	EXPECT_EQ(
+		readLoopAttempts(folder.write("images.jsonl", byImages))[0].cameras,
+		(std::vector<std::pair<std::size_t, std::size_t>>{{600, 20}}));
 }
 
 TEST(LoopAttempts, ErrorsNameFileAndLine)

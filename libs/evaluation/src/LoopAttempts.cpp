@@ -16,6 +16,9 @@ LoopAttempt parseAttempt(const nlohmann::json& line)
 	line.at("graphs_match").get_to(attempt.detected);
 	line.at("candidates").get_to(attempt.candidates);
 	line.at("matches").get_to(attempt.matches);
+	for (const auto& match : line.value("cameras", nlohmann::json::array()))
+		attempt.cameras.emplace_back(
+			match.at(0).get<std::size_t>(), match.at(1).get<std::size_t>());
 	attempt.accepted = line.at("decision").get<std::string>() == "accepted";
 	return attempt;
 }

@@ -54,6 +54,14 @@ public:
 		return false;
 	}
 
+	/** These two frames are a loop. */
+	bool isLoop(std::size_t frame, std::size_t earlier) const
+	{
+		return earlier + rule_.framesApart < frame &&
+			   shareMoreThan(
+				   rule_.commonObjects, between(frame, frame), between(earlier, earlier));
+	}
+
 	/** First and last frame of every maximal run of frames that are a loop with an earlier one. */
 	std::vector<std::pair<std::size_t, std::size_t>> places(std::size_t& loopFrames) const
 	{
@@ -132,9 +140,25 @@ LoopEvaluation evaluateLoops(
 	result.attempts = attempts.size();
 	const auto places = observed.places(result.loopFrames);
 	std::vector<char> found(places.size(), 0);
+	const auto verify = [&](bool isTrue, const LoopAttempt& attempt)
+	{
+		count(isTrue, result.verified);
+		for (std::size_t i = 0; isTrue && i < places.size(); i++)
+			if (places[i].first <= attempt.frame && places[i].second >= attempt.localMapSince)
+				found[i] = 1;
+	};
 	for (const LoopAttempt& attempt : attempts)
 	{
 		if (!attempt.detected && !attempt.accepted) continue;
+		if (!attempt.cameras.empty())
+		{
+			const bool isTrue = std::all_of(
+				attempt.cameras.begin(), attempt.cameras.end(),
+				[&](const auto& pair) { return observed.isLoop(pair.first, pair.second); });
+			count(isTrue, result.detected);
+			if (attempt.accepted) verify(isTrue, attempt);
+			continue;
+		}
 		const bool wasHere = observed.wasSeenBefore(
 			observed.between(attempt.localMapSince, attempt.frame), attempt.frame,
 			attempt.localMapSince);
@@ -142,11 +166,7 @@ LoopEvaluation evaluateLoops(
 		const auto& candidates = attempt.candidates.empty() ? attempt.matches : attempt.candidates;
 		count(wasHere && identities.mostAreRight(candidates, attempt.frame), result.detected);
 		if (!attempt.accepted) continue;
-		const bool isTrue = wasHere && identities.mostAreRight(attempt.matches, attempt.frame);
-		count(isTrue, result.verified);
-		for (std::size_t i = 0; isTrue && i < places.size(); i++)
-			if (places[i].first <= attempt.frame && places[i].second >= attempt.localMapSince)
-				found[i] = 1;
+		verify(wasHere && identities.mostAreRight(attempt.matches, attempt.frame), attempt);
 	}
 	result.places = places.size();
 	result.placesFound = std::size_t(std::count(found.begin(), found.end(), 1));

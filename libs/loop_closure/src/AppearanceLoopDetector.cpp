@@ -20,6 +20,11 @@ MRPT_INITIALIZER(registerAppearanceLoopDetectors)
 
 namespace semloop
 {
+namespace
+{
+constexpr const char* kSection = "appearance";
+}
+
 void AppearanceOptions::describe(OptionFields& fields)
 {
 	fields.integer("features", features, 10, 100000, "ORB features of a key frame");
@@ -91,7 +96,6 @@ LoopVerdict AppearanceLoopDetector::detect(const LoopQuery& query)
 				 found.pose->inliers}};
 		}
 	}
-	verdict.graphsMatch = compared > 0;
 	verdict.reason = mrpt::format(
 		"%zu pairs of %zu key frames look alike", compared, keyFrames_.size() - first);
 	if (verdict.cameras.empty())
@@ -103,6 +107,7 @@ LoopVerdict AppearanceLoopDetector::detect(const LoopQuery& query)
 	}
 	const CameraMatch& best = verdict.cameras[0];
 	verdict.decision = LoopVerdict::Decision::Accepted;
+	verdict.graphsMatch = true;
 	verdict.hasPose = true;
 	verdict.T_target_query = query.T_world_camera(best.target) + best.T_target_query +
 							 (-query.T_world_camera(best.query));
@@ -113,12 +118,12 @@ LoopVerdict AppearanceLoopDetector::detect(const LoopQuery& query)
 }
 
 void BagOfWordsLoopDetector::configure(
-	const mrpt::config::CConfigFileBase& config, const std::string& section)
+	const mrpt::config::CConfigFileBase& config, const std::string& /*section*/)
 {
-	options.loadFromConfigFile(config, section);
+	options.loadFromConfigFile(config, kSection);
 	if (options.vocabulary.empty())
 		throw UsageError(
-			configFileName(config) + ": [" + section +
+			configFileName(config) + ": [" + kSection +
 			"] vocabulary: name a file; rawlog-train-vocabulary makes one");
 	vocabulary_ = OrbVocabulary::load(options.vocabulary);
 }
@@ -145,9 +150,9 @@ std::vector<std::size_t> BagOfWordsLoopDetector::candidates(
 }
 
 void OrbLoopDetector::configure(
-	const mrpt::config::CConfigFileBase& config, const std::string& section)
+	const mrpt::config::CConfigFileBase& config, const std::string& /*section*/)
 {
-	options.loadFromConfigFile(config, section);
+	options.loadFromConfigFile(config, kSection);
 }
 
 void OrbLoopDetector::remember(const OrbFeatures&) {}

@@ -4,6 +4,7 @@
 #include <semloop/config/ModuleFactory.h>
 #include <semloop/loop_closure/ObjectAligner.h>
 #include <semloop/loop_closure/SemanticLoopDetector.h>
+#include <semloop/loop_closure/AppearanceLoopDetector.h>
 #include <semloop/loop_closure/CliqueMatcher.h>
 #include <semloop/loop_closure/DescriptorMatchers.h>
 #include <semloop/loop_closure/SpectralMatcher.h>
@@ -72,6 +73,7 @@ const std::vector<std::string>& configurationSections()
 		"local_map",
 		"loop_detection",
 		"graph_matching",
+		"appearance",
 		"alignment",
 		"pose_graph",
 		"semloop_map",
@@ -186,6 +188,9 @@ std::string configurationReference()
 	page += table(
 		"graph_matching", "of semloop::RandomWalkMatcher, when the matcher is random-walk",
 		RandomWalkMatcherOptions());
+	page += table(
+		"appearance", "of semloop::BagOfWordsLoopDetector; semloop::OrbLoopDetector has no words",
+		BagOfWordsLoopDetectorOptions());
 	page += table("alignment", "of the matched objects' surfaces", ObjectAlignerOptions());
 	page += table("pose_graph", "of semloop::CeresPoseGraph, Eq. (7)", CeresPoseGraphOptions());
 	page +=

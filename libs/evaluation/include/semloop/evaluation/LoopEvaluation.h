@@ -47,6 +47,8 @@ struct LoopEvaluation
  *      was at the time is told by most of the detections that had founded or joined it until then; the
  *      smallest id when there are equally many, none when none of them is of a real object.
  *
+ *  A claim by images, which names a pair of frames, is one when these two frames are a loop by that rule.
+ *
  *  Frames in order, as joinWithTruth() gives them. */
 LoopEvaluation evaluateLoops(
 	const std::vector<LoopAttempt>& attempts, const std::vector<RunFrame>& frames,

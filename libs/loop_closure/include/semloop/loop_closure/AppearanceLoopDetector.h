@@ -28,7 +28,9 @@ struct AppearanceOptions : Options
  *
  *  Key frames of the local map that were in no question before look for key frames from before the local map:
  *  candidates() proposes, compareCameras() decides. The verdict's loop is the pair of cameras with the most
- *  inliers. A prior is not used. A key frame takes 48 bytes a feature. */
+ *  inliers. A prior is not used. A key frame takes 48 bytes a feature.
+ *
+ *  The keys are in [appearance], so that one configuration has those of the semantic detector, too. */
 class AppearanceLoopDetector : public LoopDetector
 {
 	DEFINE_VIRTUAL_MRPT_OBJECT(AppearanceLoopDetector)
