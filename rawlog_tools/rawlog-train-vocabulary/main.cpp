@@ -95,8 +95,8 @@ void describeImages(
 		catch (const InputError& error)
 		{
 			bar.clear();
-			std::cerr << kName << ": warning: " << rawlog << ": an image is left out: "
-					  << error.what() << "\n";
+			std::cerr << kName << ": warning: " << rawlog
+					  << ": an image is left out: " << error.what() << "\n";
 			continue;
 		}
 		if (int(images.size()) > arguments.maxImages)
@@ -107,8 +107,7 @@ void describeImages(
 	}
 	bar.clear();
 	if (scans == 0)
-		throw InputError(
-			rawlog + ": holds no CObservation3DRangeScan: is it an RGB-D rawlog?");
+		throw InputError(rawlog + ": holds no CObservation3DRangeScan: is it an RGB-D rawlog?");
 }
 
 int run(int argc, char** argv)

@@ -80,8 +80,7 @@ TEST_F(RawlogTrainVocabulary, WhatIsWrongIsSaidInALineAndNothingIsWritten)
 	expect("-o out --every 12 in.rawlog", 1, "in 1 images are too few");
 	expect("-o out --every 1 --max-images 5 in.rawlog", 1, "more than 5 images");
 	const auto bytes = readBytes(folder.file("in.rawlog"));
-	std::ofstream(folder.file("cut.rawlog"), std::ios::binary)
-		<< bytes.substr(0, bytes.size() / 2);
+	std::ofstream(folder.file("cut.rawlog"), std::ios::binary) << bytes.substr(0, bytes.size() / 2);
 	expect("-o out --every 1 cut.rawlog", 1, "cut.rawlog");
 	std::ofstream(folder.file("there")) << "mine";
 	EXPECT_EQ(run("-o there in.rawlog").code, 2);

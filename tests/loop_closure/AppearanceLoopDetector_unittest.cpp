@@ -26,8 +26,11 @@ Scene texturedRoom(double cell)
 	scene.planes.push_back({{0, 1, 0}, 3, {150, 170, 180}, 0, cell});
 	for (int i = 0; i < 5; ++i)
 		scene.boxes.push_back(
-			{CPose3D(1.0 + 0.3 * i, 0.4 * i - 0.6, 0.3 + 0.1 * i, 0.3 * i, 0, 0), {0.4, 0.3, 0.5},
-			 {200, 180, 160}, i + 1, 0.7 * cell});
+			{CPose3D(1.0 + 0.3 * i, 0.4 * i - 0.6, 0.3 + 0.1 * i, 0.3 * i, 0, 0),
+			 {0.4, 0.3, 0.5},
+			 {200, 180, 160},
+			 i + 1,
+			 0.7 * cell});
 	return scene;
 }
 
@@ -67,7 +70,8 @@ TEST(CameraVerification, FindsThePoseBetweenTwoPictures)
 TEST(CameraVerification, OtherPlacesHaveNoPose)
 {
 	const auto here = extractOrb(picture(texturedRoom(0.06), kThere), 1000);
-	EXPECT_FALSE(compareCameras(here, extractOrb(picture(texturedRoom(0.047), kThere), 1000), {}).pose);
+	EXPECT_FALSE(
+		compareCameras(here, extractOrb(picture(texturedRoom(0.047), kThere), 1000), {}).pose);
 	EXPECT_FALSE(
 		compareCameras(extractOrb(picture(texturedRoom(0.06), kElsewhere), 1000), here, {}).pose);
 }
@@ -129,8 +133,9 @@ protected:
 	{
 		LoopQuery query{map, {}, {}};
 		query.firstFrame = 3;
-		query.T_world_camera = [=](std::size_t frame)
-		{ return frame == 0 ? kThere : frame < 4 ? kElsewhere : drift + last; };
+		query.T_world_camera = [=](std::size_t frame) {
+			return frame == 0 ? kThere : frame < 4 ? kElsewhere : drift + last;
+		};
 		return query;
 	}
 	static OrbVocabulary vocabulary()
@@ -138,8 +143,9 @@ protected:
 		std::vector<cv::Mat> images;
 		for (int i = 0; i < 12; ++i)
 			images.push_back(extractOrb(
-								 picture(texturedRoom(0.05 + 0.01 * (i % 3)),
-										 lookAt({-0.8, 0.3 * i - 2, 1.2}, {2, 0.2 * i, 0.5})),
+								 picture(
+									 texturedRoom(0.05 + 0.01 * (i % 3)),
+									 lookAt({-0.8, 0.3 * i - 2, 1.2}, {2, 0.2 * i, 0.5})),
 								 800)
 								 .descriptors);
 		OrbVocabularyOptions options;

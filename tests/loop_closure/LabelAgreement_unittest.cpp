@@ -17,8 +17,8 @@ ConfusionMatrix confusionOf(const std::string& rows)
 {
 	const TemporaryFolder folder;
 	const std::string path = folder.file("confusion.json");
-	std::ofstream(path) << R"({"format": "semloop.confusion/1", "labels": ["x", "y"], "p": )" << rows
-						<< "}";
+	std::ofstream(path) << R"({"format": "semloop.confusion/1", "labels": ["x", "y"], "p": )"
+						<< rows << "}";
 	return ConfusionMatrix::load(path);
 }
 

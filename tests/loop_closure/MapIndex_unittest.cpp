@@ -88,7 +88,8 @@ TEST(GraphIndex, KeptUpToDateItSaysWhatOneMadeAnewSays)
 		{
 			const std::vector<std::vector<float>> looks = {{}, {1, 0}, {0, 1}, {-1, 0}};
 			const auto v = vertex(
-				id, std::string(1, char('a' + any(4))), double(any(40)), looks[std::size_t(any(4))]);
+				id, std::string(1, char('a' + any(4))), double(any(40)),
+				looks[std::size_t(any(4))]);
 			vertices[id] = v;
 			index.add(v);
 		}

@@ -37,8 +37,8 @@ std::vector<cv::Mat> randomImages(int images, int features, int centres)
 		for (int row = 0; row < features; ++row)
 		{
 			// Of each image other centres, some common to all.
-			const int centre = int(random() % 2 ? (unsigned(image) * 3 + random() % 5) : random()) %
-							   centres;
+			const int centre =
+				int(random() % 2 ? (unsigned(image) * 3 + random() % 5) : random()) % centres;
 			places.row(std::abs(centre)).copyTo(rows.row(row));
 			for (int flip = 0; flip < 12; ++flip)
 			{
@@ -159,7 +159,10 @@ TEST(OrbVocabulary, RefusesFilesThatAreNone)
 TEST(OrbVocabulary, TooLittleToLearnFromIsAnError)
 {
 	EXPECT_THAT(
-		messageOf<InputError>([] { OrbVocabulary::train({descriptors({1, 2})}, smallTree(10, 2)); }),
+		messageOf<InputError>(
+			[] {
+				OrbVocabulary::train({descriptors({1, 2})}, smallTree(10, 2));
+			}),
 		HasSubstr("2 descriptors in 1 images"));
 	EXPECT_THROW(
 		OrbVocabulary::train(randomImages(3, 20, 5), smallTree(1, 2)), std::invalid_argument);

@@ -170,7 +170,8 @@ TEST_F(SemanticLoopDetectorOnAMap, AnObjectThatTheSurfacesOfTheOthersRefuteIsNoM
 
 TEST_F(SemanticLoopDetectorOnAMap, APriorThatRulesTheCorrectionOutIsBelieved)
 {
-	EXPECT_EQ(makeDetector().detect({map, query, target, PosePrior{}}).decision, Decision::Accepted);
+	EXPECT_EQ(
+		makeDetector().detect({map, query, target, PosePrior{}}).decision, Decision::Accepted);
 	PosePrior prior;
 	prior.sigmaXY = prior.sigmaZ = prior.sigmaYaw = 0.08;
 	const auto verdict = makeDetector().detect({map, query, target, prior});

@@ -127,8 +127,8 @@ TEST_F(LoopCloserTest, ALoopOfTwoCamerasCorrectsTheLaterOneAndWhatItSaw)
 	const NodeId camera = NodeId::camera(1), node = NodeId::object(query);
 	graph->setNode(camera, drift + T_world_camera);
 	graph->addEdge(
-		{PoseEdge::Kind::Observation, node, camera,
-		 (-graph->pose(node)) + drift + T_world_camera, 1e4 * Matrix6::Identity()});
+		{PoseEdge::Kind::Observation, node, camera, (-graph->pose(node)) + drift + T_world_camera,
+		 1e4 * Matrix6::Identity()});
 	LoopVerdict found;
 	found.decision = LoopVerdict::Decision::Accepted;
 	found.cameras = {{1, 0, CPose3D(), 1e4 * Matrix6::Identity(), 50}};

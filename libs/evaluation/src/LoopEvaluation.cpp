@@ -58,8 +58,7 @@ public:
 	bool isLoop(std::size_t frame, std::size_t earlier) const
 	{
 		return earlier + rule_.framesApart < frame &&
-			   shareMoreThan(
-				   rule_.commonObjects, between(frame, frame), between(earlier, earlier));
+			   shareMoreThan(rule_.commonObjects, between(frame, frame), between(earlier, earlier));
 	}
 
 	/** First and last frame of every maximal run of frames that are a loop with an earlier one. */

@@ -96,8 +96,8 @@ LoopVerdict AppearanceLoopDetector::detect(const LoopQuery& query)
 				 found.pose->inliers}};
 		}
 	}
-	verdict.reason = mrpt::format(
-		"%zu pairs of %zu key frames look alike", compared, keyFrames_.size() - first);
+	verdict.reason =
+		mrpt::format("%zu pairs of %zu key frames look alike", compared, keyFrames_.size() - first);
 	if (verdict.cameras.empty())
 	{
 		verdict.reason += mrpt::format(

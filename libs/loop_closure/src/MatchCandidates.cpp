@@ -122,8 +122,7 @@ private:
 class LabelRatios
 {
 public:
-	LabelRatios(
-		const GraphIndex& query, const GraphIndex& target, const LabelAgreement& agreement)
+	LabelRatios(const GraphIndex& query, const GraphIndex& target, const LabelAgreement& agreement)
 		: query_(query)
 	{
 		const std::size_t labels = target.labels();

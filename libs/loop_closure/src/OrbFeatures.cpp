@@ -12,7 +12,8 @@ Eigen::Vector3d OrbFeatures::point(std::size_t feature) const
 	const double z = depths[feature];
 	const Eigen::Vector2d pixel = pixels[feature].cast<double>();
 	return {
-		(pixel.x() - camera.cx()) / camera.fx() * z, (pixel.y() - camera.cy()) / camera.fy() * z, z};
+		(pixel.x() - camera.cx()) / camera.fx() * z, (pixel.y() - camera.cy()) / camera.fy() * z,
+		z};
 }
 
 OrbFeatures extractOrb(const RgbdFrame& frame, int count)
@@ -20,7 +21,8 @@ OrbFeatures extractOrb(const RgbdFrame& frame, int count)
 	if (frame.color.type() != CV_8UC3 || frame.depth.type() != CV_32FC1 ||
 		frame.color.size() != frame.depth.size())
 		throw InputError(
-			"ORB features: a colour image of three channels and a depth image of its size are needed");
+			"ORB features: a colour image of three channels and a depth image of its size are "
+			"needed");
 	cv::Mat gray;
 	cv::cvtColor(frame.color, gray, cv::COLOR_BGR2GRAY);
 	std::vector<cv::KeyPoint> keyPoints;

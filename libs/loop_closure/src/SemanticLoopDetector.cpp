@@ -95,8 +95,7 @@ LoopVerdict SemanticLoopDetector::detect(const LoopQuery& query)
 	{
 		if (recognizer_.needsTargetGraph())
 		{
-			const auto target =
-				SemanticGraph::fromMap(map, query.target, options_.minObservations);
+			const auto target = SemanticGraph::fromMap(map, query.target, options_.minObservations);
 			verdict = recognizer_.recognize(queryGraph, target, GraphIndex(target), query.prior);
 		}
 		else

@@ -2,11 +2,11 @@
 #include <semloop/association/NearestNeighbourAssociator.h>
 #include <semloop/association/ObjectAssociator.h>
 #include <semloop/config/ModuleFactory.h>
-#include <semloop/loop_closure/ObjectAligner.h>
-#include <semloop/loop_closure/SemanticLoopDetector.h>
 #include <semloop/loop_closure/AppearanceLoopDetector.h>
 #include <semloop/loop_closure/CliqueMatcher.h>
 #include <semloop/loop_closure/DescriptorMatchers.h>
+#include <semloop/loop_closure/ObjectAligner.h>
+#include <semloop/loop_closure/SemanticLoopDetector.h>
 #include <semloop/loop_closure/SpectralMatcher.h>
 #include <semloop/object_map/CObjectMap.h>
 #include <semloop/odometry/OpenCvOdometry.h>

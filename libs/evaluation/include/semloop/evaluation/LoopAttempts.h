@@ -20,7 +20,8 @@ struct LoopAttempt
 	bool accepted = false;          //!< after the verification
 	IdPairs candidates;             //!< (query, target) of the graph matcher
 	IdPairs matches;                //!< those that the verification left
-	std::vector<std::pair<std::size_t, std::size_t>> cameras;  //!< (query, target) frames, of images
+	std::vector<std::pair<std::size_t, std::size_t>>
+		cameras;  //!< (query, target) frames, of images
 };
 
 /** Throws InputError naming file, line and what is wrong there. An empty file is a run that never

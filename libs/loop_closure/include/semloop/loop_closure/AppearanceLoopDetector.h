@@ -18,7 +18,7 @@ struct AppearanceOptions : Options
 	int features = 1000;       //!< of a key frame
 	int keyFrameEvery = 10;    //!< segmented frames
 	int minFramesApart = 500;  //!< of the two key frames of a loop; Sec. IV-B
-	int maxQueries = 10;       //!< key frames of the local map that one question is about, the latest
+	int maxQueries = 10;  //!< key frames of the local map that one question is about, the latest
 	CameraVerificationOptions verification;
 
 	void describe(OptionFields& fields) override;

@@ -34,7 +34,8 @@ struct CameraPose
 struct CameraComparison
 {
 	std::size_t matches = 0;
-	std::optional<CameraPose> pose;  //!< empty: fewer inliers than needed, or a pose that they leave open
+	std::optional<CameraPose>
+		pose;  //!< empty: fewer inliers than needed, or a pose that they leave open
 };
 
 /** Geometric verification of an image that was found by its appearance.

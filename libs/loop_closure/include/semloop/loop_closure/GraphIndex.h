@@ -31,7 +31,7 @@ public:
 	/** @name Keeping it up to date: the time depends on the label's vertices, not on all
 	 * @{ */
 	void add(const GraphVertex& vertex);  //!< its number is size()
-	void remove(std::size_t number);  //!< the last one takes its number
+	void remove(std::size_t number);      //!< the last one takes its number
 	/** @} */
 
 	std::size_t size() const { return points_.size(); }

@@ -18,7 +18,8 @@ public:
 	std::size_t size() const { return images_; }
 
 	/** (similarity, image) of those before `end` that have a word in common, most similar first. */
-	std::vector<std::pair<double, std::size_t>> query(const BagOfWords& image, std::size_t end) const;
+	std::vector<std::pair<double, std::size_t>> query(
+		const BagOfWords& image, std::size_t end) const;
 
 private:
 	std::map<std::uint32_t, std::vector<std::pair<std::size_t, float>>> imagesWith_;

@@ -74,7 +74,7 @@ struct LoopVerdict
 	std::vector<CameraMatch> cameras;
 	/** As the graphs were matched, before surfaces were compared; query id first. */
 	std::vector<std::pair<ObjectId, ObjectId>> candidates;
-	bool graphsMatch = false;       //!< they, or the images, are a detection, whatever the surfaces say
+	bool graphsMatch = false;  //!< they, or the images, are a detection, whatever the surfaces say
 	std::size_t queryObjects = 0;   //!< objects in the local map
 	double matchedEdgeShare = 0.0;  //!< matched edges / edges of the query graph, [0, 1]
 	double matchingScore = 0.0;     //!< of the graph matcher
