@@ -110,10 +110,10 @@ std::vector<const FeatureMatch*> inliersOf(
 }  // namespace
 
 std::optional<Eigen::Isometry3d> alignFeatures(
-	const AlignmentProblem& problem, const ObjectAlignerOptions& options)
+	const CloudPairs& pairs, const ObjectAlignerOptions& options)
 {
 	std::vector<FeatureMatch> matches;
-	for (const auto& pair : problem.pairs) matchFeatures(pair, options, matches);
+	for (const auto& pair : pairs) matchFeatures(pair, options, matches);
 	if (matches.size() < kLeastInliers) return {};
 
 	std::mt19937 random(static_cast<unsigned>(options.seed));

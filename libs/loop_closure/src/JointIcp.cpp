@@ -14,6 +14,10 @@ using Vector6d = Eigen::Matrix<double, 6, 1>;
 constexpr double kShrink = 0.85;     // of the search distance, an iteration
 constexpr double kDamping = 1e-3;    // leaves alone what neither surfaces nor centres decide
 constexpr double kConverged = 1e-5;  // [m], [rad]
+constexpr double kEnough = 30;       // a handful of points is no surface
+constexpr double kSymmetric = 1 / 16.0;
+// Calibrated by alignment_benchmark: errors / what the cost's Hessian says, as a median.
+constexpr double kJointSigma = 0.1;
 
 /** H x = -g for a small motion x = (rotation, translation), applied on the target's side. */
 struct NormalEquations
@@ -32,6 +36,17 @@ Vector6d alongDirection(const Eigen::Vector3d& point, const Eigen::Vector3d& dir
 {
 	Vector6d jacobian;
 	jacobian << point.cross(direction), direction;
+	return jacobian;
+}
+
+/** Of a residual along the target's normal, for the motion d of T C exp(d), C at this point of the query. */
+Vector6d aboutPoint(
+	const CloudPair& pair, const Correspondences::Item& item, const Eigen::Isometry3d& T,
+	const Eigen::Vector3d& centre)
+{
+	const Eigen::Vector3d normal = T.linear().transpose() * pair.target.normals.col(item.target);
+	Vector6d jacobian;
+	jacobian << normal, (pair.query.points.col(item.query) - centre).cross(normal);
 	return jacobian;
 }
 
@@ -140,8 +155,47 @@ Refinement refine(
 	return result;
 }
 
-Matrix6d informationOf(
+RotationSeen rotationSeen(
 	const CloudPair& pair, const Eigen::Isometry3d& T, const ObjectAlignerOptions& options)
+{
+	const auto found =
+		findCorrespondences({&pair, &pair + 1}, T, options.endDistance, options.maxNormalAngle);
+	if (double(found.items.size()) < kEnough) return RotationSeen::None;
+	const auto count = double(found.items.size());
+	// The vertical axis to which the normals point best, by least squares; of a surface that is seen in part it is
+	// not through the centre.
+	const Eigen::Vector2d centre = (T * pair.queryCentre).head<2>();
+	Eigen::Matrix2d A = Eigen::Matrix2d::Identity() * kDamping * count;
+	Eigen::Vector2d b = Eigen::Vector2d::Zero();
+	double radius = 0;
+	const auto forEach = [&](auto&& use)
+	{
+		for (const auto& item : found.items)
+			use(item.point.head<2>() - centre, pair.target.normals.col(item.target).head<2>());
+	};
+	forEach(
+		[&](const Eigen::Vector2d& p, const Eigen::Vector2d& n)
+		{
+			const Eigen::Vector2d across(n.y(), -n.x());
+			A += across * across.transpose();
+			b += across * across.dot(p);
+			radius += p.squaredNorm() / count;
+		});
+	const Eigen::Vector2d axis = A.ldlt().solve(b);
+	if (axis.squaredNorm() > radius) return RotationSeen::All;
+	double turned = 0, all = 0;
+	forEach(
+		[&](const Eigen::Vector2d& p, const Eigen::Vector2d& n)
+		{
+			turned += mrpt::square((p - axis).x() * n.y() - (p - axis).y() * n.x());
+			all += (p - axis).squaredNorm() * n.squaredNorm();
+		});
+	return turned < kSymmetric * all ? RotationSeen::AllButYaw : RotationSeen::All;
+}
+
+Matrix6d informationOf(
+	const CloudPair& pair, const Eigen::Isometry3d& T, RotationSeen seen,
+	const ObjectAlignerOptions& options)
 {
 	Matrix6d information = Matrix6d::Zero();
 	information.topLeftCorner<3, 3>().setIdentity();
@@ -151,21 +205,55 @@ Matrix6d informationOf(
 
 	const auto found =
 		findCorrespondences({&pair, &pair + 1}, T, options.endDistance, options.maxNormalAngle);
-	// A handful of points is no surface.
-	constexpr double kEnough = 30;
 	const double scale = 1 / (mrpt::square(options.surfaceSigma) *
 							  std::max(kEnough, static_cast<double>(found.items.size())));
+	// The query's, of the target's vertical.
+	const Eigen::Vector3d up = T.linear().row(2);
 	for (const auto& item : found.items)
 	{
-		const Eigen::Vector3d normal =
-			T.linear().transpose() * pair.target.normals.col(item.target);
-		const Eigen::Vector3d point = pair.query.points.col(item.query) - pair.queryCentre;
-		Vector6d jacobian;
-		jacobian << normal, point.cross(normal);
+		Vector6d jacobian = aboutPoint(pair, item, T, pair.queryCentre);
+		if (seen == RotationSeen::None) jacobian.tail<3>().setZero();
+		if (seen == RotationSeen::AllButYaw) jacobian.tail<3>() -= up.dot(jacobian.tail<3>()) * up;
 		information.noalias() +=
 			scale * tukey(item.residual, options.endDistance) * jacobian * jacobian.transpose();
 	}
 	return information;
+}
+
+Matrix6d jointCovariance(
+	const CloudPairs& pairs, const Eigen::Isometry3d& T, const ObjectAlignerOptions& options)
+{
+	const auto found = findCorrespondences(pairs, T, options.endDistance, options.maxNormalAngle);
+	Eigen::Vector3d middle = Eigen::Vector3d::Zero();
+	for (const auto& pair : pairs) middle += pair.queryCentre / pairs.count();
+
+	Matrix6d information = Matrix6d::Zero();
+	const double scale = 1 / (mrpt::square(options.surfaceSigma) *
+							  std::max(kEnough, static_cast<double>(found.items.size())));
+	for (const auto& item : found.items)
+	{
+		const Vector6d jacobian = aboutPoint(*item.pair, item, T, middle);
+		information.noalias() +=
+			scale * tukey(item.residual, options.endDistance) * jacobian * jacobian.transpose();
+	}
+	const double centre = 1 / (mrpt::square(options.centreSigma) * pairs.count());
+	for (const auto& pair : pairs)
+		for (int axis = 0; axis < 3; ++axis)
+		{
+			const Eigen::Vector3d direction = T.linear().row(axis);
+			Vector6d jacobian;
+			jacobian << direction, (pair.queryCentre - middle).cross(direction);
+			information.noalias() += centre * jacobian * jacobian.transpose();
+		}
+	const Eigen::Matrix3d tilt =
+		T.linear().transpose() *
+		Eigen::Vector3d(
+			1 / mrpt::square(options.tiltSigma), 1 / mrpt::square(options.tiltSigma), kDamping)
+			.asDiagonal() *
+		T.linear();
+	information.bottomRightCorner<3, 3>() += tilt;
+	const Matrix6d covariance = mrpt::square(kJointSigma) * information.inverse();
+	return 0.5 * (covariance + covariance.transpose());
 }
 
 }  // namespace semloop

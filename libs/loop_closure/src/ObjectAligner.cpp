@@ -9,6 +9,10 @@ namespace semloop
 {
 namespace
 {
+constexpr const char *kSemantic = "semantic_pose", *kFeatures = "fpfh_ransac",
+					 *kPerObject = "per_object_fpfh";
+constexpr double kAnyAngle = 10;  // [rad]
+
 SurfacePair surfacesOf(const Object& query, const Object& target)
 {
 	const auto inWorld = [](const Object& object)
@@ -28,13 +32,12 @@ SurfacePair surfacesOf(const Object& query, const Object& target)
 }
 
 /** Root mean square over the query's points of the distance between where two poses put them. */
-double correctionOf(
-	const AlignmentProblem& problem, const Eigen::Isometry3d& a, const Eigen::Isometry3d& b)
+double correctionOf(const CloudPairs& pairs, const Eigen::Isometry3d& a, const Eigen::Isometry3d& b)
 {
 	double sum = 0;
-	for (const auto& pair : problem.pairs)
+	for (const auto& pair : pairs)
 		sum += (a * pair.query.points - b * pair.query.points).squaredNorm();
-	return std::sqrt(sum / static_cast<double>(problem.all().queryPoints()));
+	return std::sqrt(sum / static_cast<double>(pairs.queryPoints()));
 }
 
 /** Empty when nothing speaks against the result. */
@@ -72,39 +75,136 @@ MatchAlignment alignCentres(
 	return result;
 }
 
+/** One pair on its own, if its surfaces align; what they do not see of the rotation stays that of the joint pose. */
+std::optional<MatchAlignment> alignAlone(
+	const AlignmentProblem& problem, const CloudPair& pair, const Eigen::Isometry3d& joint,
+	const ObjectAlignerOptions& options)
+{
+	constexpr double kKept = 1e-4;  // [rad]
+	const CloudPairs alone{&pair, &pair + 1};
+	const RotationSeen seen = rotationSeen(pair, joint, options);
+	const double tilt = seen == RotationSeen::None ? kKept : options.rotationSigma;
+	const double yaw = seen == RotationSeen::All ? options.rotationSigma : kKept;
+	const auto refined = refine(alone, joint, {joint.linear(), {tilt, tilt, yaw}}, options);
+	const auto aligned =
+		findCorrespondences(alone, refined.T, options.endDistance, options.maxNormalAngle);
+	const auto fitness =
+		static_cast<double>(aligned.items.size()) / static_cast<double>(alone.queryPoints());
+	const double moved = (refined.T * pair.queryCentre - joint * pair.queryCentre).norm();
+	if (fitness < options.minFitness || aligned.rmse() > options.maxRmse ||
+		moved > options.startDistance)
+		return {};
+	return MatchAlignment{
+		problem.toWorld(refined.T), informationOf(pair, refined.T, seen, options)};
+}
+
 std::vector<MatchAlignment> alignPairByPair(
 	const AlignmentProblem& problem, const std::vector<SurfacePair>& pairs,
 	const Eigen::Isometry3d& joint, const ObjectAlignerOptions& options)
 {
 	const auto T_joint = problem.toWorld(joint);
-	const RotationPrior prior{joint.linear(), Eigen::Vector3d::Constant(options.rotationSigma)};
 	std::vector<MatchAlignment> result;
 	for (const auto& pair : pairs) result.push_back(alignCentres(pair, T_joint, options));
 	for (const auto& pair : problem.pairs)
-	{
-		MatchAlignment& alignment = result[pair.index];
-		const CloudPairs alone{&pair, &pair + 1};
-		const auto refined = refine(alone, joint, prior, options);
-		const auto aligned =
-			findCorrespondences(alone, refined.T, options.endDistance, options.maxNormalAngle);
-		const auto fitness =
-			static_cast<double>(aligned.items.size()) / static_cast<double>(alone.queryPoints());
-		const double moved = (refined.T * pair.queryCentre - joint * pair.queryCentre).norm();
-		if (fitness < options.minFitness || aligned.rmse() > options.maxRmse ||
-			moved > options.startDistance)
-			continue;
-		alignment.T_target_query = problem.toWorld(refined.T);
-		alignment.information = informationOf(pair, refined.T, options);
-	}
+		if (const auto alone = alignAlone(problem, pair, joint, options))
+			result[pair.index] = *alone;
 	return result;
+}
+
+/** How these pairs align at a pose. */
+ObjectAlignment measured(
+	const AlignmentProblem& problem, const CloudPairs& pairs, const Refinement& refined,
+	const Eigen::Isometry3d& semantic, const ObjectAlignerOptions& options)
+{
+	ObjectAlignment result;
+	const auto aligned =
+		findCorrespondences(pairs, refined.T, options.endDistance, options.maxNormalAngle);
+	result.T_target_query = problem.toWorld(refined.T);
+	result.covariance = jointCovariance(pairs, refined.T, options);
+	result.iterations = refined.iterations;
+	result.fitness =
+		static_cast<double>(aligned.items.size()) / static_cast<double>(pairs.queryPoints());
+	result.rmse = aligned.rmse();
+	result.reason = objection(result, correctionOf(pairs, refined.T, semantic), options);
+	result.accepted = result.reason.empty();
+	if (result.accepted)
+		result.reason = mrpt::format(
+			"%.0f %% of the surface points align to %.3f m", 100 * result.fitness, result.rmse);
+	return result;
+}
+
+/** The joint refinement from a start. */
+ObjectAlignment alignFrom(
+	const Eigen::Isometry3d& start, const AlignmentProblem& problem,
+	const std::vector<SurfacePair>& pairs, const Eigen::Isometry3d& semantic,
+	const ObjectAlignerOptions& options)
+{
+	const RotationPrior upright{
+		semantic.linear(), {options.tiltSigma, options.tiltSigma, kAnyAngle}};
+	const auto refined = refine(problem.all(), start, upright, options);
+	auto result = measured(problem, problem.all(), refined, semantic, options);
+	if (result.accepted) result.pairs = alignPairByPair(problem, pairs, refined.T, options);
+	return result;
+}
+
+ObjectAlignment alignByFeatures(
+	const AlignmentProblem& problem, const std::vector<SurfacePair>& pairs,
+	const Eigen::Isometry3d& semantic, const ObjectAlignerOptions& options)
+{
+	if (const auto start = alignFeatures(problem.all(), options))
+		return alignFrom(*start, problem, pairs, semantic, options);
+	ObjectAlignment result;
+	result.T_target_query = problem.toWorld(semantic);
+	result.reason = "FPFH + RANSAC found no pose; the views may be too different";
+	return result;
+}
+
+/** The paper's: no object knows of the others. */
+ObjectAlignment alignEach(
+	const AlignmentProblem& problem, const std::vector<SurfacePair>& pairs,
+	const Eigen::Isometry3d& semantic, const ObjectAlignerOptions& options)
+{
+	ObjectAlignerOptions plain = options;
+	plain.centreSigma = 1e3;
+	const RotationPrior any{semantic.linear(), Eigen::Vector3d::Constant(kAnyAngle)};
+	ObjectAlignment best;
+	best.T_target_query = problem.toWorld(semantic);
+	best.reason = "FPFH + RANSAC found no pose of any object; the views may be too different";
+	std::vector<std::optional<MatchAlignment>> found(pairs.size());
+	for (const auto& pair : problem.pairs)
+	{
+		const CloudPairs alone{&pair, &pair + 1};
+		const auto start = alignFeatures(alone, options);
+		if (!start) continue;
+		const auto refined = refine(alone, *start, any, plain);
+		const auto result = measured(problem, alone, refined, semantic, options);
+		if (result.accepted)
+			found[pair.index] = MatchAlignment{
+				result.T_target_query,
+				informationOf(pair, refined.T, rotationSeen(pair, refined.T, options), options)};
+		if (best.iterations == 0 || result.accepted > best.accepted ||
+			(result.accepted == best.accepted && result.fitness > best.fitness))
+			best = result;
+	}
+	if (!best.accepted) return best;
+	for (std::size_t i = 0; i < pairs.size(); ++i)
+		best.pairs.push_back(
+			found[i].value_or(alignCentres(pairs[i], best.T_target_query, options)));
+	return best;
 }
 }  // namespace
 
 void ObjectAlignerOptions::describe(OptionFields& fields)
 {
 	fields.choice(
-		"method", method, {"semantic_pose", "fpfh_ransac"},
-		"start of the refinement: matched centres, or the paper's FPFH + RANSAC");
+		"method", method, {kSemantic, kFeatures, kPerObject},
+		"start of the refinement: matched centres, FPFH + RANSAC over all objects, or the paper's, "
+		"each "
+		"object alone by FPFH + RANSAC + ICP");
+	fields.integer(
+		"fallback_below", fallbackBelow, 0, 1000000,
+		"fewer objects than this are aligned by FPFH + RANSAC, too, and the better result is "
+		"taken");
 	fields.number("query_voxel", queryVoxel, 0.001, 1, "thinning of the query's surfaces [m]");
 	fields.number("target_voxel", targetVoxel, 0.001, 1, "thinning of the target's surfaces [m]");
 	fields.integer("max_query_points", maxQueryPoints, 10, 1000000, "of all objects together");
@@ -145,44 +245,26 @@ void ObjectAligner::configure(
 ObjectAlignment ObjectAligner::align(
 	const std::vector<SurfacePair>& pairs, const mrpt::poses::CPose3D& T_semantic) const
 {
-	ObjectAlignment result;
-	result.T_target_query = T_semantic;
 	const auto problem = makeProblem(pairs, options);
 	if (problem.pairs.empty())
 	{
+		ObjectAlignment result;
+		result.T_target_query = T_semantic;
 		result.reason = "none of the " + std::to_string(pairs.size()) +
 						" matched pairs has a surface on both sides";
 		return result;
 	}
 	const Eigen::Isometry3d semantic = problem.toLocal(T_semantic);
-	Eigen::Isometry3d start = semantic;
-	if (options.method == "fpfh_ransac")
-	{
-		const auto found = alignFeatures(problem, options);
-		if (!found)
-		{
-			result.reason = "FPFH + RANSAC found no pose; the views may be too different";
-			return result;
-		}
-		start = *found;
-	}
-	constexpr double kAnyYaw = 10;
-	const RotationPrior upright{semantic.linear(), {options.tiltSigma, options.tiltSigma, kAnyYaw}};
-	const auto refined = refine(problem.all(), start, upright, options);
-	const auto aligned =
-		findCorrespondences(problem.all(), refined.T, options.endDistance, options.maxNormalAngle);
+	if (options.method == kPerObject) return alignEach(problem, pairs, semantic, options);
+	if (options.method == kFeatures) return alignByFeatures(problem, pairs, semantic, options);
 
-	result.T_target_query = problem.toWorld(refined.T);
-	result.iterations = refined.iterations;
-	result.fitness = static_cast<double>(aligned.items.size()) /
-					 static_cast<double>(problem.all().queryPoints());
-	result.rmse = aligned.rmse();
-	result.reason = objection(result, correctionOf(problem, refined.T, semantic), options);
-	result.accepted = result.reason.empty();
-	if (!result.accepted) return result;
-	result.reason = mrpt::format(
-		"%.0f %% of the surface points align to %.3f m", 100 * result.fitness, result.rmse);
-	result.pairs = alignPairByPair(problem, pairs, refined.T, options);
+	auto result = alignFrom(semantic, problem, pairs, semantic, options);
+	// Two centres tell little of the yaw, and one nothing.
+	if (int(problem.pairs.size()) < options.fallbackBelow)
+	{
+		auto other = alignByFeatures(problem, pairs, semantic, options);
+		if (other.accepted && (!result.accepted || other.fitness > result.fitness)) return other;
+	}
 	return result;
 }
 

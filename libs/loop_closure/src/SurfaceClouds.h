@@ -110,12 +110,30 @@ Refinement refine(
 	const CloudPairs& pairs, const Eigen::Isometry3d& start, const RotationPrior& prior,
 	const ObjectAlignerOptions& options);
 
-/** Hessian of the cost of one pair at T, for the motion that MatchAlignment describes. */
-Eigen::Matrix<double, 6, 6> informationOf(
+/** What the aligned surfaces of one pair say of its rotation. */
+enum class RotationSeen
+{
+	All,
+	AllButYaw,  //!< rotationally symmetric: all normals meet a vertical axis
+	None        //!< barely seen
+};
+/** Symmetric: sum ((p x n)_z)^2 < 1/16 sum |p_xy|^2 |n_xy|^2 over the aligned points p, relative to the best axis,
+ *  which is no further from the centre than the points are. */
+RotationSeen rotationSeen(
 	const CloudPair& pair, const Eigen::Isometry3d& T, const ObjectAlignerOptions& options);
+
+/** Hessian of the cost of one pair at T, for the motion that MatchAlignment describes, without what its surface
+ *  does not see of the rotation. */
+Eigen::Matrix<double, 6, 6> informationOf(
+	const CloudPair& pair, const Eigen::Isometry3d& T, RotationSeen seen,
+	const ObjectAlignerOptions& options);
+
+/** See ObjectAlignment::covariance. */
+Eigen::Matrix<double, 6, 6> jointCovariance(
+	const CloudPairs& pairs, const Eigen::Isometry3d& T, const ObjectAlignerOptions& options);
 
 /** FPFH matched within each pair, then RANSAC over all; empty when no model has 10 inliers. */
 std::optional<Eigen::Isometry3d> alignFeatures(
-	const AlignmentProblem& problem, const ObjectAlignerOptions& options);
+	const CloudPairs& pairs, const ObjectAlignerOptions& options);
 
 }  // namespace semloop

@@ -16,6 +16,7 @@ namespace semloop
 struct ObjectAlignerOptions : Options
 {
 	std::string method = "semantic_pose";  //!< where the refinement starts
+	int fallbackBelow = 3;                 //!< with fewer objects FPFH + RANSAC is tried, too
 	double queryVoxel = 0.03;    //!< the query's surface is thinned to a point per voxel [m]
 	double targetVoxel = 0.015;  //!< same, of the target's surface [m]
 	int maxQueryPoints = 2000;   //!< of all objects together
@@ -54,16 +55,21 @@ struct ObjectAlignment
 	double fitness = 0.0;  //!< query points with an aligned partner / query points, [0, 1]
 	double rmse = 0.0;     //!< of those, along the target's normals [m]
 	int iterations = 0;    //!< of the refinement
+	/** Of a small motion d = (translation [m], rotation vector [rad]) of the query about the mean M of its
+	 *  matched centres: T_target_query M exp(d), M with the axes of the query's world. */
+	Eigen::Matrix<double, 6, 6> covariance = Eigen::Matrix<double, 6, 6>::Identity();
 	std::vector<MatchAlignment> pairs;  //!< each pair on its own, in the order given; see align()
 };
 
 /** Aligns the surfaces of all matched objects at once (Sec. III-C, Object Alignment).
  *
- *  method = semantic_pose starts where the matched centres say; fpfh_ransac is the paper's: FPFH
- *  (R. Rusu et al., ICRA 2009) matched within each pair of objects, then RANSAC over three points, and
- *  needs views of the objects that are not too different.
+ *  method = semantic_pose starts where the matched centres say; fpfh_ransac where FPFH (R. Rusu et al., ICRA
+ *  2009) matched within each pair of objects say, by RANSAC over three points: it needs views of the objects
+ *  that are not too different. Of fewer than fallbackBelow objects, whose centres say little of the yaw, both
+ *  are tried, and the one with the better fitness is taken. per_object_fpfh is the paper's: each object alone by
+ *  FPFH + RANSAC + ICP, without the centres; the joint pose is that of the object whose surfaces align best.
  *
- *  Both are refined by point-to-plane ICP (Y. Chen and G. Medioni, 1992) with correspondences within
+ *  The other two are refined by point-to-plane ICP (Y. Chen and G. Medioni, 1992) with correspondences within
  *  matched objects only, at a distance that shrinks from startDistance to endDistance and with
  *  Tukey's weights. The cost is
  *      mean of (n . (T q - t))^2 / surfaceSigma^2  +  mean of |T c_q - c_t|^2 / centreSigma^2
@@ -84,7 +90,11 @@ public:
 	 *  there is drift too; it starts at the joint pose. The cost is the joint one of that pair alone,
 	 *  with |log R R_joint^T|^2 / rotationSigma^2 in place of the tilt for what its surface leaves open,
 	 *  as a flat object does its yaw; a pair whose surfaces do not align has its centres only. The
-	 *  information is the cost's Hessian. */
+	 *  information is the cost's Hessian. The yaw of a rotationally symmetric pair, and the rotation of a pair
+	 *  that is barely seen, stay those of the joint pose: the surface has no say, only rotationSigma.
+	 *
+	 *  The joint covariance is the inverse of the joint cost's Hessian, scaled so that alignment_benchmark's
+	 *  errors are what it says. */
 	ObjectAlignment align(
 		const std::vector<SurfacePair>& pairs, const mrpt::poses::CPose3D& T_semantic) const;
 
