@@ -311,6 +311,24 @@ TEST_F(ObjectAlignerOnThreeObjects, TheCovarianceIsThatOfTheErrorsAndGoesWithThe
 	EXPECT_LT((moved.covariance - result.covariance).norm(), 0.2 * result.covariance.norm());
 }
 
+TEST_F(ObjectAlignerOnThreeObjects, WhatWasNotSeenOfAnObjectWidensItsCentre)
+{
+	auto partly = pairs;
+	partly[1].query.clear();  // its centre is all there is
+	partly[1].centreVariance = 0.16;
+	ObjectAligner aligner;
+	const auto result = aligner.align(partly, semanticPose(0.05, 5));
+	ASSERT_TRUE(result.accepted) << result.reason;
+	EXPECT_NEAR(result.pairs[1].information(0, 0), 1 / (0.09 + 0.16), 1e-9);
+	EXPECT_NEAR(result.pairs[1].information(2, 2), 1 / (0.09 + 0.16), 1e-9);
+	// Of an object that does have a surface it is the least that is known.
+	const auto known = aligner.align(pairs, semanticPose(0.05, 5)).pairs[0].information;
+	auto vague = pairs;
+	vague[0].centreVariance = 0.16;
+	const auto wider = aligner.align(vague, semanticPose(0.05, 5)).pairs[0].information;
+	EXPECT_LT(wider.topLeftCorner(3, 3).trace(), known.topLeftCorner(3, 3).trace());
+}
+
 TEST(ObjectAligner, WithoutSurfacesThereIsNothingToAlign)
 {
 	const auto T = CPose3D(1, 2, 3, 0, 0, 0);

@@ -286,6 +286,28 @@ TEST(PlaceSearch, MatchesOneAboveTheOtherProposeNothing)
 	EXPECT_TRUE(PlaceSearch(pile, index).placesOf(identityMatches(2)).found.empty());
 }
 
+TEST(PlaceSearch, ACentreThatWasSeenFromOneSideMayBeFarOff)
+{
+	// Eight objects fit exactly; a ninth is 0.45 m off.
+	auto room = randomRoom(9, 4, 11);
+	auto query = room;
+	query.vertices[4].position.x += 0.45;
+	const auto all = placesOf(query, room).found.at(0);
+	query.vertices[4].completeness = 0;
+	query.vertices[4].extent.emplace(0.4, 1.2, 0.5);
+	room.vertices[4].completeness = 0.2;
+	const auto part = placesOf(query, room).found.at(0);
+	EXPECT_EQ(all.matches.size(), 8u);
+	EXPECT_EQ(part.matches.size(), 9u);
+	EXPECT_GT(part.evidence, all.evidence);
+	// It does not bend the pose.
+	expectNear(part.T_target_query, CPose3D(), 0.02, 0.02);
+	// What was seen all round is as if nothing was said.
+	for (auto& v : room.vertices) v.completeness = 1;
+	query.vertices[4].completeness = {};
+	EXPECT_EQ(placesOf(query, room).found.at(0).evidence, all.evidence);
+}
+
 TEST(PlaceSearch, ThousandsOfLookalikesEndTheSearchBeforeItIsComplete)
 {
 	SemanticGraph field;

@@ -54,7 +54,7 @@ TEST(SemanticGraphFile, LoadsEveryField)
 	const auto graph = loadText(documentOf(
 		R"({"id": 3, "label": "chair", "position": [1, -2.5, 3], "label_scores": {"chair": 0.9,
 			"couch": 0.1}, "embedding": [0.6, 0.8], "extent": [0.5, 0.4, 1], "orientation": [0, 0, 0.6, 0.8],
-			"observations": 41},)" +
+			"observations": 41, "completeness": 0.4},)" +
 			std::string(kChair),
 		"[7, 3]"));
 	ASSERT_EQ(graph.vertices.size(), 2);
@@ -66,6 +66,8 @@ TEST(SemanticGraphFile, LoadsEveryField)
 	EXPECT_EQ(chair.embeddings, (std::vector<std::vector<float>>{{0.6f, 0.8f}}));
 	EXPECT_EQ(chair.extent->z, 1);
 	EXPECT_EQ(chair.observations, 41);
+	EXPECT_EQ(chair.completeness, 0.4);
+	EXPECT_FALSE(graph.vertices[1].completeness);
 	EXPECT_EQ(chair.orientation, mrpt::math::CQuaternionDouble(0.8, 0, 0, 0.6));
 	EXPECT_FALSE(graph.vertices[1].orientation);
 	EXPECT_FALSE(graph.vertices[1].extent);
@@ -87,6 +89,7 @@ TEST(SemanticGraphFile, SavingAndLoadingKeepsEverythingAndTheBytes)
 	graph.vertices[1].extent.emplace(0.5, 0.5, 1);
 	graph.vertices[1].orientation.emplace(std::sqrt(0.5), 0, 0, -std::sqrt(0.5));
 	graph.vertices[1].observations = 3;
+	graph.vertices[1].completeness = 0.6;
 	const TemporaryFolder folder;
 	graph.save(folder.file("a.json"));
 	const auto loaded = SemanticGraph::load(folder.file("a.json"));
@@ -96,6 +99,7 @@ TEST(SemanticGraphFile, SavingAndLoadingKeepsEverythingAndTheBytes)
 	ASSERT_EQ(loaded.vertices.size(), 2);
 	EXPECT_EQ(loaded.vertices[0].id, 4) << "objects are in the order of their ids";
 	EXPECT_EQ(loaded.vertices[0].observations, 3);
+	EXPECT_EQ(loaded.vertices[0].completeness, 0.6);
 	EXPECT_EQ(loaded.vertices[0].extent->z, 1);
 	EXPECT_NEAR(loaded.vertices[0].orientation->z(), -std::sqrt(0.5), 1e-6);
 	EXPECT_EQ(loaded.vertices[1].label, "cup \"A\"");
@@ -222,6 +226,10 @@ INSTANTIATE_TEST_SUITE_P(
 				R"({"id": 1, "label": "cup", "position": [1, 2, 3], "embedding": [1, 0]},
 				   {"id": 2, "label": "cup", "position": [1, 2, 3], "embedding": [1, 0, 0]})"),
 			"objects[1].embedding", "has 3 numbers, the ones before have 2"},
+		BadFile{
+			"Completeness",
+			documentOf(R"({"id": 1, "label": "cup", "position": [1, 2, 3], "completeness": 1.5})"),
+			"objects[0].completeness", "must be in [0, 1]"},
 		BadFile{
 			"Extent",
 			documentOf(R"({"id": 1, "label": "cup", "position": [1, 2, 3], "extent": [1, -1, 1]})"),

@@ -1,3 +1,4 @@
+#include <mrpt/core/bits_math.h>
 #include <semloop/config/Error.h>
 #include <semloop/loop_closure/GraphIndex.h>
 
@@ -9,6 +10,7 @@ namespace semloop
 {
 namespace
 {
+constexpr double kUsualSize = 0.5;  // of furniture whose extent is not known [m]
 constexpr double kLeastSide = 2.0;  // of a map: a single object fills no less [m]
 
 [[noreturn]] void fail(const GraphVertex& vertex, const std::string& problem)
@@ -55,6 +57,13 @@ std::map<std::string, double> labelShares(const GraphVertex& vertex)
 	return shares;
 }
 
+double centreSigmaOf(const GraphVertex& vertex)
+{
+	if (!vertex.completeness) return 0;
+	const double size = vertex.extent ? std::max(vertex.extent->x, vertex.extent->y) : kUsualSize;
+	return centreSigma(*vertex.completeness, size);
+}
+
 bool isBefore(const GraphIndex::Entry& a, const GraphIndex::Entry& b)
 {
 	return std::tie(a.x, a.vertex) < std::tie(b.x, b.vertex);
@@ -85,6 +94,7 @@ void GraphIndex::remove(std::size_t number)
 		eraseEntry(last);
 		ids_[number] = ids_[last];
 		points_[number] = points_[last];
+		centreVariances_[number] = centreVariances_[last];
 		labelOf_[number] = labelOf_[last];
 		std::swap(shares_[number], shares_[last]);
 		hasEmbedding_[number] = hasEmbedding_[last];
@@ -93,6 +103,7 @@ void GraphIndex::remove(std::size_t number)
 	}
 	ids_.pop_back();
 	points_.pop_back();
+	centreVariances_.pop_back();
 	labelOf_.pop_back();
 	shares_.pop_back();
 	hasEmbedding_.pop_back();
@@ -133,6 +144,7 @@ void GraphIndex::append(const GraphVertex& vertex)
 
 	ids_.push_back(vertex.id);
 	points_.push_back(p);
+	centreVariances_.push_back(mrpt::square(centreSigmaOf(vertex)));
 	labelOf_.push_back(numberOf(vertex.label));
 	shares_.emplace_back();
 	for (const auto& [label, share] : shares)

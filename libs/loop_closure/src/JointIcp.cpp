@@ -71,9 +71,9 @@ void addSurfaces(
 void addCentres(
 	NormalEquations& equations, const CloudPairs& pairs, const Eigen::Isometry3d& T, double sigma)
 {
-	const double scale = 1 / (sigma * sigma * pairs.count());
 	for (const auto& pair : pairs)
 	{
+		const double scale = 1 / ((sigma * sigma + pair.centreVariance) * pairs.count());
 		const Eigen::Vector3d centre = T * pair.queryCentre;
 		for (int axis = 0; axis < 3; ++axis)
 			equations.add(
@@ -199,7 +199,7 @@ Matrix6d informationOf(
 {
 	Matrix6d information = Matrix6d::Zero();
 	information.topLeftCorner<3, 3>().setIdentity();
-	information.topLeftCorner<3, 3>() /= mrpt::square(options.centreSigma);
+	information.topLeftCorner<3, 3>() /= mrpt::square(options.centreSigma) + pair.centreVariance;
 	information.bottomRightCorner<3, 3>().setIdentity();
 	information.bottomRightCorner<3, 3>() /= mrpt::square(options.rotationSigma);
 
@@ -236,8 +236,10 @@ Matrix6d jointCovariance(
 		information.noalias() +=
 			scale * tukey(item.residual, options.endDistance) * jacobian * jacobian.transpose();
 	}
-	const double centre = 1 / (mrpt::square(options.centreSigma) * pairs.count());
 	for (const auto& pair : pairs)
+	{
+		const double centre =
+			1 / ((mrpt::square(options.centreSigma) + pair.centreVariance) * pairs.count());
 		for (int axis = 0; axis < 3; ++axis)
 		{
 			const Eigen::Vector3d direction = T.linear().row(axis);
@@ -245,6 +247,7 @@ Matrix6d jointCovariance(
 			jacobian << direction, (pair.queryCentre - middle).cross(direction);
 			information.noalias() += centre * jacobian * jacobian.transpose();
 		}
+	}
 	const Eigen::Matrix3d tilt =
 		T.linear().transpose() *
 		Eigen::Vector3d(

@@ -208,7 +208,9 @@ MatchCandidates::MatchCandidates(
 				if (isSeen && target.hasEmbedding(entry.vertex))
 					weight += looks.evidence(looks.similarity(j, entry.vertex), sameLabel);
 				if (weight > kLeastWeight)
-					candidates_[j].push_back({entry.x, entry.y, entry.z, weight, entry.vertex});
+					candidates_[j].push_back(
+						{entry.x, entry.y, entry.z, weight, entry.vertex,
+						 float(own.centreVariance(j) + target.centreVariance(entry.vertex))});
 			}
 			isMixed = isMixed || (before > 0 && candidates_[j].size() > before);
 		}

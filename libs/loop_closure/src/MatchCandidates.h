@@ -18,6 +18,7 @@ public:
 		float x, y, z;  //!< centre in the map [m]
 		float weight;   //!< ln p(l_j | l_k) / p(l_j) + ln p(s_jk | same) / p(s_jk | different)
 		std::uint32_t target;
+		float variance;  //!< of both centres, for what was not seen of the objects [m^2]
 	};
 
 	/** Throws InputError as GraphIndex does, and when the embeddings of query and map differ in length. */

@@ -1,6 +1,7 @@
 #include <mrpt/core/format.h>
 #include <semloop/loop_closure/ObjectAligner.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "SurfaceClouds.h"
@@ -28,7 +29,9 @@ SurfacePair surfacesOf(const Object& query, const Object& target)
 		}
 		return surface;
 	};
-	return {inWorld(query), inWorld(target), query.centre(), target.centre()};
+	return {
+		inWorld(query), inWorld(target), query.centre(), target.centre(),
+		ObjectAligner::centreVariance(query, target)};
 }
 
 /** Root mean square over the query's points of the distance between where two poses put them. */
@@ -69,7 +72,8 @@ MatchAlignment alignCentres(
 	for (int axis = 0; axis < 3; ++axis)
 	{
 		result.T_target_query.m_coords[axis] += shift[axis];
-		result.information(axis, axis) = 1 / mrpt::square(options.centreSigma);
+		result.information(axis, axis) =
+			1 / (mrpt::square(options.centreSigma) + pair.centreVariance);
 		result.information(3 + axis, 3 + axis) = 1 / mrpt::square(options.rotationSigma);
 	}
 	return result;
@@ -234,6 +238,17 @@ void ObjectAlignerOptions::describe(OptionFields& fields)
 	fields.number("ransac_distance", ransacDistance, 0.001, 10, "of an inlier [m]");
 	fields.integer("ransac_iterations", ransacIterations, 1, 10000000, "number of samples");
 	fields.integer("seed", seed, 0, 1000000000, "of the RANSAC");
+}
+
+double ObjectAligner::centreVariance(const Object& query, const Object& target)
+{
+	const auto variance = [](const Object& object)
+	{
+		const auto extent = object.extent();
+		return mrpt::square(
+			centreSigma(object.seenSides.completeness(), std::max(extent.x, extent.y)));
+	};
+	return variance(query) + variance(target);
 }
 
 void ObjectAligner::configure(

@@ -20,6 +20,12 @@ constexpr int kMaxSteps = 4;
 constexpr double kFirstSigmas[] = {0.2, 0.1};
 constexpr double kWide = 9;  // squared ratio of the two normal distributions' sigmas
 
+/** Of a pair whose objects were not seen all round. */
+double widened(double sigma, double variance)
+{
+	return variance > 0 ? std::sqrt(sigma * sigma + variance) : sigma;
+}
+
 /** exp underflows only where the wide one has decided. */
 double kernel(double squaredDistance, double sigma, double badShare)
 {
@@ -172,6 +178,7 @@ void PlaceEvidence::findPairs(const YawPose& pose)
 					 c->target,
 					 squared,
 					 double(c->weight),
+					 double(c->variance),
 					 {double(c->x), double(c->y), double(c->z)}});
 		}
 	}
@@ -183,7 +190,9 @@ void PlaceEvidence::match(double sigma)
 	ranked_.clear();
 	for (std::size_t i = 0; i < pairs_.size(); ++i)
 	{
-		const double value = pairs_[i].weight + logKernel(pairs_[i].squaredDistance, sigma);
+		const double value =
+			pairs_[i].weight +
+			logKernel(pairs_[i].squaredDistance, widened(sigma, pairs_[i].variance));
 		if (value > 0) ranked_.emplace_back(-value, i);
 	}
 	std::sort(ranked_.begin(), ranked_.end());
@@ -230,12 +239,13 @@ std::optional<YawPose> PlaceEvidence::fit(double sigma) const
 	pairs.reserve(matched_.size());
 	for (const std::size_t i : matched_)
 	{
-		const double d = pairs_[i].squaredDistance / (sigma * sigma);
+		const double own = widened(sigma, pairs_[i].variance);
+		const double d = pairs_[i].squaredDistance / (own * own);
 		const double wide = options_.badCentreShare / 27 * std::exp(-0.5 * d / kWide);
-		const double all = kernel(pairs_[i].squaredDistance, sigma, options_.badCentreShare);
+		const double all = kernel(pairs_[i].squaredDistance, own, options_.badCentreShare);
 		pairs.push_back(
 			{candidates_.point(pairs_[i].query), pairs_[i].point,
-			 (all - wide + wide / kWide) / all});
+			 (all - wide + wide / kWide) / all * mrpt::square(sigma / own)});
 	}
 	return fitYawPose(pairs);
 }

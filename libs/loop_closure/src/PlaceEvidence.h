@@ -72,7 +72,7 @@ private:
 	struct Pair
 	{
 		std::size_t query, target;
-		double squaredDistance, weight;
+		double squaredDistance, weight, variance;
 		mrpt::math::TPoint3D point;  //!< of the target
 	};
 

@@ -34,8 +34,11 @@ void dropWhatTheSurfacesRefute(
 		const auto& [query, target] = verdict.matches[i];
 		const auto error = verdict.T_target_query.composePoint(map.object(query).centre()) -
 						   map.object(target).centre();
-		if (std::hypot(error.x, error.y) > options.maxHorizontalError ||
-			std::abs(error.z) > options.maxVerticalError)
+		const double variance =
+			ObjectAligner::centreVariance(map.object(query), map.object(target));
+		const auto widened = [&](double limit) { return std::sqrt(limit * limit + variance); };
+		if (std::hypot(error.x, error.y) > widened(options.maxHorizontalError) ||
+			std::abs(error.z) > widened(options.maxVerticalError))
 			continue;
 		matches.push_back(verdict.matches[i]);
 		alignments.push_back(verdict.alignments[i]);

@@ -196,7 +196,8 @@ AlignmentProblem makeProblem(
 		problem.pairs.push_back(
 			{i, std::move(query), std::move(target),
 			 toEigen(pair.queryCentre) - problem.queryOrigin,
-			 toEigen(pair.targetCentre) - problem.targetOrigin, std::move(nearest)});
+			 toEigen(pair.targetCentre) - problem.targetOrigin, pair.centreVariance,
+			 std::move(nearest)});
 	}
 	const Eigen::Index limit = options.maxQueryPoints;
 	const Eigen::Index stride = (problem.all().queryPoints() + limit - 1) / limit;

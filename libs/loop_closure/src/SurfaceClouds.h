@@ -44,6 +44,7 @@ struct CloudPair
 	std::size_t index = 0;  //!< among the pairs given
 	Cloud query, target;
 	Eigen::Vector3d queryCentre, targetCentre;
+	double centreVariance = 0;  //!< SurfacePair's
 	NearestPoint nearestTarget;
 };
 

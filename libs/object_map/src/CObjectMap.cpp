@@ -24,6 +24,20 @@ std::pair<double, double> robustRange(std::vector<double> values, double p)
 	return {low, *(values.end() - 1 - rank)};
 }
 
+/** Of an object that the image's edge cuts it is not known what was seen. */
+void markSeenSides(
+	Object& object, const RgbdFrame& frame, const Instance& instance, const CPose3D& T_world_camera)
+{
+	const cv::Rect inside(1, 1, frame.color.cols - 2, frame.color.rows - 2);
+	const cv::Rect seen = instance.mask.boundingBox();
+	if ((seen & inside) != seen) return;
+	const auto box = object.volume->boundingBox();
+	if (!box) return;
+	const auto camera =
+		object.T_world_object.inverseComposePoint(TPoint3D(T_world_camera.translation()));
+	object.seenSides.seenFrom(camera - (box->min + box->max) * 0.5);
+}
+
 struct Extent
 {
 	TPoint3D centre;
@@ -156,6 +170,7 @@ std::optional<ObjectId> CObjectMap::addObject(
 	object.labelScores = averageLabels(instance.labelScores, 1, {}, 0);
 	addEmbeddings(object.embeddings, {instance.embedding}, insertionOptions.maxEmbeddings);
 	object.observations = 1;
+	markSeenSides(object, frame, instance, T_world_camera);
 	object.firstSeen = object.lastSeen = frame.time;
 	const ObjectId id = object.id;
 	objects_.emplace(id, std::move(object));
@@ -184,6 +199,7 @@ bool CObjectMap::fuse(
 		averageLabels(object.labelScores, object.observations, instance.labelScores, 1);
 	addEmbeddings(object.embeddings, {instance.embedding}, insertionOptions.maxEmbeddings);
 	++object.observations;
+	markSeenSides(object, frame, instance, T_world_camera);
 	object.existence = updatedExistence(object.existence, kHitLogOdds);
 	object.lastSeen = frame.time;
 	return true;

@@ -115,6 +115,7 @@ void CObjectMap::mergeObjects(ObjectId kept, ObjectId absorbed)
 		target.labelScores, target.observations, source.labelScores, source.observations);
 	addEmbeddings(target.embeddings, source.embeddings, insertionOptions.maxEmbeddings);
 	target.observations += source.observations;
+	target.seenSides.add(source.seenSides, source.T_world_object - target.T_world_object);
 	target.timesSeenThrough += source.timesSeenThrough;
 	target.existence = std::max(target.existence, source.existence);
 	target.firstSeen = std::min(target.firstSeen, source.firstSeen);

@@ -162,6 +162,7 @@ void writeObject(CArchive& out, const Object& object)
 	for (const auto& [id, count] : object.covisible) out << id << int32_t(count);
 	writeTime(out, object.firstSeen);
 	writeTime(out, object.lastSeen);
+	out << uint8_t(object.seenSides.bits());
 }
 
 LabelScores readLabelScores(CArchive& in, std::size_t labels)
@@ -192,7 +193,9 @@ std::vector<std::vector<float>> readEmbeddings(CArchive& in)
 	return embeddings;
 }
 
-Object readObject(CArchive& in, std::size_t labels)
+constexpr uint8_t kAllSides = (1U << SeenSides::kSides) - 1;
+
+Object readObject(CArchive& in, std::size_t labels, uint8_t version)
 {
 	Object object;
 	object.id = readNumber<uint64_t>(in);
@@ -215,13 +218,17 @@ Object readObject(CArchive& in, std::size_t labels)
 	}
 	object.firstSeen = readTime(in);
 	object.lastSeen = readTime(in);
+	// Before, it was not kept: what may have been seen is not held against an object.
+	const auto sides = version >= 2 ? readNumber<uint8_t>(in) : kAllSides;
+	if (sides > kAllSides) damaged("object " + std::to_string(object.id) + " has too many sides");
+	object.seenSides = SeenSides(sides);
 	return object;
 }
 }  // namespace
 
 uint8_t CObjectMap::serializeGetVersion() const
 {
-	return 1;  // 1: options of likelihood and visualization
+	return 2;  // 1: options of likelihood and visualization; 2: seen sides
 }
 
 void CObjectMap::serializeTo(CArchive& out) const
@@ -240,7 +247,7 @@ void CObjectMap::serializeTo(CArchive& out) const
 
 void CObjectMap::serializeFrom(CArchive& in, uint8_t version)
 {
-	if (version > 1) MRPT_THROW_UNKNOWN_SERIALIZATION_VERSION(version);
+	if (version > 2) MRPT_THROW_UNKNOWN_SERIALIZATION_VERSION(version);
 	CObjectMap map;  // so that nothing is half read when this throws
 	map.genericMapParams.enableSaveAs3DObject = readNumber<uint8_t>(in) != 0;
 	map.genericMapParams.enableObservationLikelihood = readNumber<uint8_t>(in) != 0;
@@ -259,7 +266,7 @@ void CObjectMap::serializeFrom(CArchive& in, uint8_t version)
 	const auto count = readNumber<uint32_t>(in);
 	for (uint32_t i = 0; i < count; ++i)
 	{
-		Object object = readObject(in, map.labels_.size());
+		Object object = readObject(in, map.labels_.size(), version);
 		const ObjectId id = object.id;
 		if (id >= map.nextId_ || !map.objects_.emplace(id, std::move(object)).second)
 			damaged("id " + std::to_string(id) + " is repeated or out of range");

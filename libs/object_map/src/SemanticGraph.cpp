@@ -18,6 +18,7 @@ GraphVertex vertexOf(const CObjectMap& map, const Object& object)
 	vertex.extent = object.extent();
 	object.T_world_object.getAsQuaternion(vertex.orientation.emplace());
 	vertex.observations = object.observations;
+	vertex.completeness = object.seenSides.completeness();
 	return vertex;
 }
 

@@ -137,6 +137,12 @@ GraphVertex parseVertex(const Node& node)
 		vertex.extent.emplace(extent.x, extent.y, extent.z);
 	}
 	if (node.has("orientation")) vertex.orientation = parseQuaternion(node.at("orientation"));
+	if (node.has("completeness"))
+	{
+		vertex.completeness = node.at("completeness").number();
+		if (*vertex.completeness < 0 || *vertex.completeness > 1)
+			node.at("completeness").fail("must be in [0, 1]");
+	}
 	if (node.has("observations"))
 	{
 		const uint64_t count = node.at("observations").index();
@@ -250,6 +256,7 @@ nlohmann::ordered_json toJson(const GraphVertex& vertex, const std::string& path
 	if (const auto& q = vertex.orientation)
 		object["orientation"] = {number(q->x()), number(q->y()), number(q->z()), number(q->r())};
 	if (vertex.observations > 0) object["observations"] = vertex.observations;
+	if (vertex.completeness) object["completeness"] = number(*vertex.completeness);
 	return object;
 }
 }  // namespace

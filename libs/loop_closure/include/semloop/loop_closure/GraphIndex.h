@@ -38,6 +38,9 @@ public:
 	ObjectId id(std::size_t vertex) const { return ids_[vertex]; }
 	const mrpt::math::TPoint3D& point(std::size_t vertex) const { return points_[vertex]; }
 
+	/** Of the centre, for what was not seen of the object [m^2]; see centreSigma(). */
+	double centreVariance(std::size_t vertex) const { return centreVariances_[vertex]; }
+
 	/** Every label has a number; kNoLabel when no vertex ever had it. */
 	static constexpr int kNoLabel = -1;
 	int labelNumber(const std::string& label) const;
@@ -76,6 +79,7 @@ private:
 
 	std::vector<ObjectId> ids_;
 	std::vector<mrpt::math::TPoint3D> points_;
+	std::vector<double> centreVariances_;
 	std::map<std::string, int, std::less<>> numbers_;
 	std::vector<std::string> names_;
 	std::vector<int> labelOf_;

@@ -45,6 +45,7 @@ struct SurfacePair
 {
 	std::vector<SurfacePoint> query, target;
 	mrpt::math::TPoint3D queryCentre, targetCentre;
+	double centreVariance = 0;  //!< of their difference per axis, for what was not seen [m^2]
 };
 
 struct ObjectAlignment
@@ -72,7 +73,8 @@ struct ObjectAlignment
  *  The other two are refined by point-to-plane ICP (Y. Chen and G. Medioni, 1992) with correspondences within
  *  matched objects only, at a distance that shrinks from startDistance to endDistance and with
  *  Tukey's weights. The cost is
- *      mean of (n . (T q - t))^2 / surfaceSigma^2  +  mean of |T c_q - c_t|^2 / centreSigma^2
+ *      mean of (n . (T q - t))^2 / surfaceSigma^2
+ *      +  mean of |T c_q - c_t|^2 / (centreSigma^2 + centreVariance)
  *      +  tilt^2 / tiltSigma^2,
  *  whose second part, over the matched centres, decides what the surfaces leave open, such as sliding
  *  along flat ones, and whose third keeps up up. The yaw of a single round object stays open.
@@ -102,6 +104,9 @@ public:
 	ObjectAlignment align(
 		const CObjectMap& map, const std::vector<std::pair<ObjectId, ObjectId>>& matches,
 		const mrpt::poses::CPose3D& T_semantic) const;
+
+	/** SurfacePair's, of two objects of the map; see centreSigma(). */
+	static double centreVariance(const Object& query, const Object& target);
 
 	ObjectAlignerOptions options;
 };

@@ -60,7 +60,7 @@ struct Places
  *      e_jk(T) = ln P_m / (1 - P_m) + ln V K_sigma(T q_j - t_k) + ln p(l_j | l_k) / p(l_j)
  *                + ln p(s_jk | same) / p(s_jk | different),
  *  K_sigma = (1 - b) N(0, sigma^2 I) + b N(0, 9 sigma^2 I) for centres of objects that were seen in
- *  part; l labels, p(l_j | l_k) by LabelAgreement, p(l) their share in the map, both averaged over the label
+ *  part, and where it is known how much of both was seen, sigma^2 + centreSigma(j)^2 + centreSigma(k)^2 for sigma^2; l labels, p(l_j | l_k) by LabelAgreement, p(l) their share in the map, both averaged over the label
  *  scores of objects that have some; s the similarity of the embeddings, its distribution
  *  among different objects fitted to all pairs, that of the same object to the best of each query object.
  *  sigma is not known: the best of a range is taken. The evidence of a place is

@@ -2,6 +2,7 @@
 
 #include <mrpt/core/Clock.h>
 #include <mrpt/poses/CPose3D.h>
+#include <semloop/object_map/SeenSides.h>
 #include <semloop/object_map/TsdfVolume.h>
 #include <semloop/observations/LabelSet.h>
 
@@ -22,9 +23,10 @@ struct Object
 	/** V_j. Shared between copies of a map until one of them writes (CObjectMap copies it then). */
 	std::shared_ptr<TsdfVolume> volume;
 	mrpt::poses::CPose3D T_world_object;  //!< centre; axes parallel to the world's when created
-	LabelScores labelScores;  //!< l_j: mean of the matched detections' distributions
+	LabelScores labelScores;              //!< l_j: mean of the matched detections' distributions
 	std::vector<std::vector<float>> embeddings;  //!< E_j: bounded, the most different ones are kept
-	int observations = 0;  //!< frames fused
+	int observations = 0;                        //!< frames fused
+	SeenSides seenSides;                         //!< of its box
 	int timesSeenThrough = 0;  //!< frames that looked at its place and saw something behind it
 	/** p(the object is there), from hits and misses [0, 1] */
 	double existence = 0.5;

@@ -25,6 +25,8 @@ struct GraphVertex
 	/** Of the object's axes in the graph's world; none: they are the world's. */
 	std::optional<mrpt::math::CQuaternionDouble> orientation;
 	int observations = 0;
+	/** Share of the object's sides that were seen, [0, 1]; none: unknown, taken for 1. */
+	std::optional<double> completeness;
 };
 
 /** G = (V, E): an edge joins two objects that were seen in the same local map. */
