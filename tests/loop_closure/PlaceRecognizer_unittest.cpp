@@ -251,6 +251,46 @@ TEST(PlaceRecognizer, APlaceFarFromThePriorIsRefusedUnlessAnyDistanceWillDo)
 		Decision::Accepted);
 }
 
+TEST(PlaceRecognizer, APlaceIsWeighedByThePriorOfItsOwnObjects)
+{
+	// Two rooms alike, 3 m apart: the query is the first, and has drifted by 0.6 m towards the second.
+	const auto room = randomRoom(8, 2, 3);
+	auto map = moved(room, yawPose(-0.6, 0, 0, 0));
+	const auto other = moved(room, yawPose(2.4, 0, 0, 0));
+	for (auto v : other.vertices)
+	{
+		v.id += 100;
+		map.vertices.push_back(v);
+	}
+	PosePrior wide;  // since the oldest, which is somewhere else
+	wide.sigmaXY = 3;
+	wide.sigmaYaw = 0.5;
+	const PlaceRecognizer recognizer;
+	const GraphIndex index(map);
+	EXPECT_EQ(recognizer.recognize(room, index, wide).decision, Decision::Ambiguous);
+	// The second room was seen a moment ago, the first one long before.
+	const auto priorOf = [&](const std::vector<ObjectId>& objects)
+	{
+		PosePrior prior = wide;
+		if (objects.front() >= 100) prior.sigmaXY = prior.sigmaYaw = 0.1;
+		return prior;
+	};
+	const auto verdict = recognizer.recognize(room, index, wide, priorOf);
+	EXPECT_EQ(verdict.decision, Decision::Accepted) << verdict.reason;
+	EXPECT_LT(verdict.matches.front().second, 100u);
+	EXPECT_NEAR(verdict.T_target_query.x(), -0.6, 0.01);
+	// If both were, neither would do.
+	const auto none = recognizer.recognize(
+		room, index, wide,
+		[](const auto&)
+		{
+			PosePrior prior;
+			prior.sigmaXY = prior.sigmaYaw = 0.05;
+			return prior;
+		});
+	EXPECT_EQ(none.decision, Decision::Rejected) << none.reason;
+}
+
 TEST(PlaceRecognizer, PairsOfCandidatesNeedTheIndexOnlyMatchersTheGraph)
 {
 	const auto room = randomRoom(10, 8, 2);

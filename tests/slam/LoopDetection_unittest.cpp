@@ -29,6 +29,7 @@ public:
 	};
 	static std::vector<Question> questions;
 	static std::vector<std::size_t> frames;
+	static std::size_t narrower;
 
 	void configure(const mrpt::config::CConfigFileBase& config, const std::string& section) override
 	{
@@ -41,6 +42,15 @@ public:
 	}
 	LoopVerdict detect(const LoopQuery& asked) override
 	{
+		if (asked.prior)
+		{
+			// Not wider for one object than for all, which includes the oldest.
+			const auto one = asked.priorOf({*asked.target.rbegin()});
+			EXPECT_LE(one.sigmaXY, asked.prior->sigmaXY);
+			narrower += one.sigmaXY < asked.prior->sigmaXY;
+			const std::vector<ObjectId> all(asked.target.begin(), asked.target.end());
+			EXPECT_EQ(asked.priorOf(all).sigmaXY, asked.prior->sigmaXY);
+		}
 		questions.push_back(
 			{asked.query.size(), asked.target.size(), asked.prior, asked.firstFrame,
 			 asked.T_world_camera(frames.back())});
@@ -55,6 +65,7 @@ private:
 };
 std::vector<ScriptedDetector::Question> ScriptedDetector::questions;
 std::vector<std::size_t> ScriptedDetector::frames;
+std::size_t ScriptedDetector::narrower = 0;
 }  // namespace semloop
 
 IMPLEMENTS_MRPT_OBJECT(ScriptedDetector, semloop::LoopDetector, semloop)
@@ -110,6 +121,7 @@ TEST(LoopDetection, IsToldWhatOdometrySaysOfTheDriftSinceTheRestWasSeen)
 	EXPECT_FALSE(questions.front().prior.has_value()) << "everything is in the local map";
 	ASSERT_TRUE(questions.back().prior.has_value());
 	EXPECT_GT(last, first + 0.001);
+	EXPECT_GT(ScriptedDetector::narrower, 0u);
 
 	std::istringstream stream(lines);
 	std::string line;

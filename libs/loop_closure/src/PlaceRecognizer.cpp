@@ -75,6 +75,21 @@ std::optional<LoopVerdict> tooSmall(const SemanticGraph& query, const GraphIndex
 	return verdict;
 }
 
+void reweigh(
+	Places& places, const PlaceSearch& search, const GraphIndex& target, const PosePrior& prior,
+	const PriorOfObjects& priorOf)
+{
+	for (Place& place : places.found)
+	{
+		std::vector<ObjectId> ids;
+		for (const auto& match : place.matches) ids.push_back(target.id(match.target));
+		place = search.reweighed(std::move(place), prior, priorOf(ids));
+	}
+	std::stable_sort(
+		places.found.begin(), places.found.end(),
+		[](const Place& a, const Place& b) { return a.evidence > b.evidence; });
+}
+
 /** Those that are not this one. */
 std::vector<Place> rivalsOf(
 	const Place& place, std::vector<Place> places, const PlaceSearch& search, double rivalDistance)
@@ -208,8 +223,8 @@ LoopVerdict PlaceRecognizer::recognize(
 }
 
 LoopVerdict PlaceRecognizer::recognize(
-	const SemanticGraph& query, const GraphIndex& target,
-	const std::optional<PosePrior>& prior) const
+	const SemanticGraph& query, const GraphIndex& target, const std::optional<PosePrior>& prior,
+	const PriorOfObjects& priorOf) const
 {
 	if (needsTargetGraph())
 		throw std::logic_error("place recognition: " + options_.matcher + " needs the graph");
@@ -218,7 +233,8 @@ LoopVerdict PlaceRecognizer::recognize(
 	LoopVerdict verdict;
 	verdict.queryObjects = query.vertices.size();
 	const PlaceSearch search(query, target, labelAgreement_, options_.search);
-	const auto places = search.places(prior);
+	auto places = search.places(prior);
+	if (prior && priorOf) reweigh(places, search, target, *prior, priorOf);
 	judge(query, target, search, places, places.found, prior.has_value(), verdict);
 	return verdict;
 }

@@ -362,6 +362,22 @@ Places PlaceSearch::placesOf(
 	return search.best();
 }
 
+Place PlaceSearch::reweighed(Place place, const PosePrior& before, const PosePrior& now) const
+{
+	const auto density = [&](const PosePrior& prior) {
+		return PoseDensity(
+			impl_->candidates, impl_->target.area(), impl_->options.priorDoubt, prior);
+	};
+	const auto& T = place.T_target_query;
+	YawPose pose;
+	pose.cosine = std::cos(T.yaw());
+	pose.sine = std::sin(T.yaw());
+	pose.translation = TPoint3D(T.translation());
+	place.evidence += density(now).log(pose) - density(before).log(pose);
+	place.priorSigmas = density(now).sigmas(pose);
+	return place;
+}
+
 double PlaceSearch::distance(const mrpt::poses::CPose3D& a, const mrpt::poses::CPose3D& b) const
 {
 	double sum = 0;

@@ -104,7 +104,7 @@ LoopVerdict SemanticLoopDetector::detect(const LoopQuery& query)
 		else
 			verdict = recognizer_.recognize(
 				queryGraph, target_.update(map, query.target, options_.minObservations),
-				query.prior);
+				query.prior, query.priorOf);
 	}
 	catch (const InputError& error)  // graphs that the matcher cannot take
 	{

@@ -48,10 +48,11 @@ LoopCloser::LoopCloser(
 {
 }
 
-LoopVerdict LoopCloser::detect(const LocalMap& localMap, const std::optional<PosePrior>& prior)
+LoopVerdict LoopCloser::detect(
+	const LocalMap& localMap, const std::optional<PosePrior>& prior, const PriorOfObjects& priorOf)
 {
 	const StageTimings::Scope timing(timings_, "loop_detection");
-	LoopQuery asked{*map_, {}, {}, prior, localMap.firstFrame()};
+	LoopQuery asked{*map_, {}, {}, prior, priorOf, localMap.firstFrame()};
 	for (const auto& [id, object] : map_->objects())
 		(localMap.contains(id) ? asked.query : asked.target).insert(id);
 	asked.T_world_camera = [this](std::size_t frame)

@@ -239,8 +239,9 @@ void SemanticSlam::closeLoop(mrpt::Clock::time_point time)
 	record.frame = frameCount() - 1;
 	record.time = time;
 	record.localMapSince = localMap_.firstFrame();
-	record.prior = driftPrior();
-	record.verdict = loopCloser_->detect(localMap_, record.prior);
+	record.prior = priorOfTheRest();
+	record.verdict = loopCloser_->detect(
+		localMap_, record.prior, [this](const auto& objects) { return priorOf(objects); });
 	record.matched = matchedObjects(record.verdict);
 	if (record.verdict.decision == LoopVerdict::Decision::Accepted)
 	{
@@ -274,25 +275,29 @@ std::size_t SemanticSlam::frameAt(mrpt::Clock::time_point time) const
 	return std::size_t(frame - odometryTrajectory_.begin());
 }
 
-std::optional<PosePrior> SemanticSlam::driftPrior() const
+mrpt::math::TPoint3D SemanticSlam::localCentroid() const
 {
 	mrpt::math::TPoint3D sum(0, 0, 0);
-	std::size_t inside = 0;
+	const auto inside = localMap_.objects();
+	for (const ObjectId id : inside) sum += map_->object(id).centre();
+	return sum * (1.0 / double(std::max<std::size_t>(1, inside.size())));
+}
+
+PosePrior SemanticSlam::priorOf(const std::vector<ObjectId>& objects) const
+{
 	auto since = odometryTrajectory_.back().time;
-	for (const auto& [id, object] : map_->objects())
-	{
-		if (!localMap_.contains(id))
-		{
-			since = std::min(since, object.lastSeen);
-			continue;
-		}
-		sum += object.centre();
-		++inside;
-	}
-	const bool isOneSided = inside == 0 || inside == map_->objects().size();
+	for (const ObjectId id : objects) since = std::min(since, map_->object(id).lastSeen);
+	return driftPrior_.prior(frameAt(since), frameCount() - 1, cameraPose(), localCentroid());
+}
+
+std::optional<PosePrior> SemanticSlam::priorOfTheRest() const
+{
+	std::vector<ObjectId> rest;
+	for (const auto& entry : map_->objects())
+		if (!localMap_.contains(entry.first)) rest.push_back(entry.first);
+	const bool isOneSided = rest.empty() || rest.size() == map_->objects().size();
 	if (isOneSided || options_.maxDriftSigmas == 0) return {};
-	return driftPrior_.prior(
-		frameAt(since), frameCount() - 1, cameraPose(), sum * (1.0 / double(inside)));
+	return priorOf(rest);
 }
 
 double SemanticSlam::driftSigmas(const LoopVerdict& verdict) const

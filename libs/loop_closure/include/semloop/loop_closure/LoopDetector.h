@@ -26,7 +26,8 @@ struct LoopQuery
 	std::set<ObjectId> query, target;  //!< objects of the local map; all others
 	/** About no correction at all; without one nothing is known of the drift. */
 	std::optional<PosePrior> prior = {};
-	std::size_t firstFrame = 0;  //!< of the local map
+	PriorOfObjects priorOf = {};  //!< may be empty; never wider than `prior`
+	std::size_t firstFrame = 0;   //!< of the local map
 	/** Of any frame, as the pose graph has it now; may be empty where only objects are asked about. */
 	std::function<mrpt::poses::CPose3D(std::size_t frame)> T_world_camera = {};
 };

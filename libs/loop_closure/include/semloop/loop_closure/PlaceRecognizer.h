@@ -67,10 +67,11 @@ public:
 	LoopVerdict recognize(
 		const SemanticGraph& query, const SemanticGraph& target, const GraphIndex& targetIndex,
 		const std::optional<PosePrior>& prior = {}) const;
-	/** The same without a matcher; throws std::logic_error when needsTargetGraph(). */
+	/** The same without a matcher; throws std::logic_error when needsTargetGraph(). With `priorOf` each place is
+	 *  weighed by the prior of the objects that it is made of. */
 	LoopVerdict recognize(
 		const SemanticGraph& query, const GraphIndex& target,
-		const std::optional<PosePrior>& prior = {}) const;
+		const std::optional<PosePrior>& prior = {}, const PriorOfObjects& priorOf = {}) const;
 
 private:
 	LoopVerdict publishedVerdict(

@@ -95,6 +95,9 @@ public:
 	Places placesOf(
 		const std::vector<Match>& matches, const std::optional<PosePrior>& prior = {}) const;
 
+	/** The place under another prior: its evidence and its distance from the prior change, its pose does not. */
+	Place reweighed(Place place, const PosePrior& before, const PosePrior& now) const;
+
 	/** Root mean square distance between where two poses put the query's centres [m]. */
 	double distance(const mrpt::poses::CPose3D& a, const mrpt::poses::CPose3D& b) const;
 

@@ -1,6 +1,10 @@
 #pragma once
 
 #include <mrpt/poses/CPose3D.h>
+#include <semloop/object_map/Object.h>
+
+#include <functional>
+#include <vector>
 
 namespace semloop
 {
@@ -13,5 +17,9 @@ struct PosePrior
 	double sigmaZ = 0.1;    //!< [m]
 	double sigmaYaw = 0.1;  //!< [rad]
 };
+
+/** The prior, given that the query belongs to these objects of the target: seen lately, they leave less room for
+ *  drift than the oldest of the map. */
+using PriorOfObjects = std::function<PosePrior(const std::vector<ObjectId>&)>;
 
 }  // namespace semloop

@@ -23,7 +23,9 @@ public:
 		std::shared_ptr<LoopDetector> detector, StageTimings& timings);
 
 	/** Query: the local map; target: everything else. */
-	LoopVerdict detect(const LocalMap& localMap, const std::optional<PosePrior>& prior);
+	LoopVerdict detect(
+		const LocalMap& localMap, const std::optional<PosePrior>& prior,
+		const PriorOfObjects& priorOf);
 	/** Carries out an accepted verdict: an edge joins each matched object of the local map to its
 	 *  partner, and each matched camera to the earlier one, all poses are optimised, and the objects moved and merged, except where the other
 	 *  measurements contradict the edge. The pose graph keeps both nodes of a merged object. Merged

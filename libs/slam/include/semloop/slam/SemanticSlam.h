@@ -84,7 +84,10 @@ private:
 	std::vector<MatchedObjects> matchedObjects(const LoopVerdict& verdict) const;
 	void closeLoop(mrpt::Clock::time_point time);
 	/** What odometry says of the local map against the oldest part of the rest; empty while there is none. */
-	std::optional<PosePrior> driftPrior() const;
+	std::optional<PosePrior> priorOfTheRest() const;
+	/** The same against these objects, which are not in the local map. */
+	PosePrior priorOf(const std::vector<ObjectId>& objects) const;
+	mrpt::math::TPoint3D localCentroid() const;  //!< of the local map's centres
 	/** How improbable the correction is, see DriftPrior. */
 	double driftSigmas(const LoopVerdict& verdict) const;
 	std::size_t frameAt(mrpt::Clock::time_point time) const;
