@@ -16,6 +16,7 @@ constexpr double kLeastSpread = 0.1;   // [m^2]
 constexpr double kLeastHeight = 0.5;   // [m]
 // Of similarities. Those of one object are seldom worse than kPoorSigma below their usual value.
 constexpr float kSameSigma = 0.04f, kPoorSigma = 0.15f, kPoorShare = 0.2f, kLeastSigma = 0.03f;
+constexpr std::size_t kFew = 16;  // looked through faster than searched
 constexpr std::size_t kEnoughPairs = 10;  // to measure how alike different objects are
 
 float normal(float x, float mean, float sigma)
@@ -253,8 +254,15 @@ MatchCandidates::range(const std::vector<Candidate>& candidates, double low, dou
 {
 	const auto* begin = candidates.data();
 	const auto* end = begin + candidates.size();
-	begin = std::partition_point(begin, end, [&](const Candidate& c) { return double(c.x) < low; });
-	end = std::partition_point(begin, end, [&](const Candidate& c) { return double(c.x) <= high; });
+	const auto isBefore = [&](const Candidate& c) { return double(c.x) < low; };
+	const auto isWithin = [&](const Candidate& c) { return double(c.x) <= high; };
+	if (candidates.size() > kFew)
+	{
+		begin = std::partition_point(begin, end, isBefore);
+		return {begin, std::partition_point(begin, end, isWithin)};
+	}
+	while (begin != end && isBefore(*begin)) ++begin;
+	while (begin != end && !isWithin(end[-1])) --end;
 	return {begin, end};
 }
 

@@ -26,11 +26,11 @@ double widened(double sigma, double variance)
 	return variance > 0 ? std::sqrt(sigma * sigma + variance) : sigma;
 }
 
-/** exp underflows only where the wide one has decided. */
-double kernel(double squaredDistance, double sigma, double badShare)
+/** The mixture of both distributions over exp(-d / (2 kWide)), d the squared distance in sigmas: the wide
+ *  one's share of it is then constant, and nothing underflows that decides. */
+double overWide(double d, double badShare)
 {
-	const double d = squaredDistance / (sigma * sigma);
-	return (1 - badShare) * std::exp(-0.5 * d) + badShare / 27 * std::exp(-0.5 * d / kWide);
+	return (1 - badShare) * std::exp(-0.5 * d * (1 - 1 / kWide)) + badShare / 27;
 }
 }  // namespace
 
@@ -150,8 +150,9 @@ double PlaceEvidence::supportBase() const
 
 double PlaceEvidence::logKernel(double squaredDistance, double sigma) const
 {
-	return logOdds_ - 3 * std::log(sigma) +
-		   std::log(kernel(squaredDistance, sigma, options_.badCentreShare));
+	const double d = squaredDistance / (sigma * sigma);
+	return logOdds_ - 0.5 * d / kWide +
+		   std::log(overWide(d, options_.badCentreShare) / (sigma * sigma * sigma));
 }
 
 /** All that are near enough under the pose. */
@@ -241,8 +242,8 @@ std::optional<YawPose> PlaceEvidence::fit(double sigma) const
 	{
 		const double own = widened(sigma, pairs_[i].variance);
 		const double d = pairs_[i].squaredDistance / (own * own);
-		const double wide = options_.badCentreShare / 27 * std::exp(-0.5 * d / kWide);
-		const double all = kernel(pairs_[i].squaredDistance, own, options_.badCentreShare);
+		const double wide = options_.badCentreShare / 27;
+		const double all = overWide(d, options_.badCentreShare);
 		pairs.push_back(
 			{candidates_.point(pairs_[i].query), pairs_[i].point,
 			 (all - wide + wide / kWide) / all * mrpt::square(sigma / own)});

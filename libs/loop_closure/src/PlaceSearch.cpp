@@ -25,6 +25,7 @@ constexpr std::ptrdiff_t kMostWork = 200'000'000;
 constexpr std::size_t kHypotheses = 12;  // that are refined
 // Evidence behind the best from where no rival comes back: the refinement adds half of it at most.
 constexpr double kHopeless = 40;
+constexpr double kNearBest = 0.1;  // to the best hypothesis, not worth a look [m]
 constexpr double kSamePose = 0.4;  // hypotheses so near lead to one place [m]
 
 struct Proposal
@@ -66,6 +67,13 @@ public:
 		while (proposals_.back().support < least()) proposals_.pop_back();
 	}
 
+	/** The refinement of the best leads to the same place from there. */
+	bool isAtBest(const YawPose& pose) const
+	{
+		return !proposals_.empty() &&
+			   squaredDistance(proposals_.front().pose, pose) < kNearBest * kNearBest;
+	}
+
 	const std::vector<Proposal>& proposals() const { return proposals_; }
 
 	/** Mean over the query's centres. */
@@ -83,7 +91,7 @@ private:
 
 double horizontalDistance(const TPoint3D& a, const TPoint3D& b)
 {
-	return std::hypot(a.x - b.x, a.y - b.y);
+	return std::sqrt(mrpt::square(a.x - b.x) + mrpt::square(a.y - b.y));
 }
 
 /** lengthQ is the horizontal distance of the first two. Empty when the distances disagree or leave the yaw
@@ -307,6 +315,7 @@ private:
 
 	void propose(const YawPose& pose)
 	{
+		if (shortlist_.isAtBest(pose)) return;
 		const double least = shortlist_.least();
 		const bool isSmall = impl_.others.empty();
 		// The others will not differ much from the probes.
