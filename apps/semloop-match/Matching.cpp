@@ -41,7 +41,7 @@ void printForPerson(std::ostream& out, const TimedVerdict& result)
 		for (std::size_t i = 0; i < matrix.size(); ++i)
 			out << std::setw(13) << matrix[i] << (i % 4 == 3 ? "\n" : "");
 	}
-	out << std::setprecision(3) << "runner-up " << verdict.runnerUp << ", probability "
+	out << std::setprecision(3) << "runner-up " << verdict.runnerUp.value_or(0) << ", probability "
 		<< verdict.probability << ", " << result.milliseconds << " ms\n";
 }
 
@@ -57,7 +57,7 @@ void printJson(std::ostream& out, const TimedVerdict& result)
 	else
 		document["T_target_query"] = nullptr;
 	document["inliers"] = verdict.matches.size();
-	document["runner_up"] = verdict.runnerUp;
+	document["runner_up"] = verdict.runnerUp.value_or(0);
 	document["probability"] = verdict.probability;
 	document["milliseconds"] = result.milliseconds;
 	out << document.dump() << "\n";

@@ -15,7 +15,8 @@ import shutil
 import subprocess
 import sys
 
-PROGRAMS = ["rawlog-simulate", "semloop-slam", "semloop-eval", "loop_closure_benchmark"]
+PROGRAMS = ["rawlog-simulate", "semloop-slam", "semloop-eval", "rawlog-train-vocabulary",
+            "loop_closure_benchmark"]
 
 
 def call_main(main):

@@ -92,7 +92,7 @@ TEST(PlaceRecognizer, ADeskThatStandsTwiceIsAmbiguousUntilAPriorTells)
 	{
 		const auto verdict = recognized(desk, target, matcher);
 		EXPECT_EQ(verdict.decision, Decision::Ambiguous) << verdict.reason;
-		EXPECT_NEAR(verdict.runnerUp, 1, 1e-3);
+		EXPECT_NEAR(verdict.runnerUp.value(), 1, 1e-3);
 		EXPECT_LT(verdict.probability, 0.5);
 	}
 	PosePrior prior;
@@ -113,7 +113,7 @@ TEST(PlaceRecognizer, AnObjectThatWasMovedIsNoMatch)
 	EXPECT_EQ(verdict.matches.size(), 7u);
 	for (const auto& match : verdict.matches) EXPECT_NE(match.first, query.vertices[5].id);
 	EXPECT_LT(verdict.T_target_query.distanceTo(T), 1e-4);
-	EXPECT_NEAR(verdict.centreRmse, 0, 1e-4);
+	EXPECT_NEAR(verdict.centreRmse.value(), 0, 1e-4);
 }
 
 TEST(PlaceRecognizer, AMirroredOrInvertedRoomIsAnotherRoom)
@@ -153,7 +153,7 @@ TEST(PlaceRecognizer, ATurnOfASymmetricPlaceIsARival)
 		 vertex(4, "table", 0, 0, 0.7)});
 	const auto verdict = recognized(scene, scene);
 	EXPECT_EQ(verdict.decision, Decision::Ambiguous) << verdict.reason;
-	EXPECT_NEAR(verdict.runnerUp, 1, 1e-6);
+	EXPECT_NEAR(verdict.runnerUp.value(), 1, 1e-6);
 	// Which of the four, odometry can tell.
 	const auto known = recognized(scene, scene, "pairwise", PosePrior{});
 	EXPECT_EQ(known.decision, Decision::Accepted) << known.reason;
@@ -186,7 +186,7 @@ TEST(PlaceRecognizer, NoisyCentresGiveThePoseOfTheirMean)
 	const mrpt::math::TPoint3D middle(2.5, 2, 1);
 	EXPECT_LT((verdict.T_target_query.composePoint(middle) - T.composePoint(middle)).norm(), 0.08);
 	EXPECT_NEAR(verdict.T_target_query.yaw(), T.yaw(), 0.04);
-	EXPECT_NEAR(verdict.centreRmse, 0.05 * std::sqrt(3.0), 0.04);
+	EXPECT_NEAR(verdict.centreRmse.value(), 0.05 * std::sqrt(3.0), 0.04);
 }
 
 TEST(PlaceRecognizer, WhereTheQueryBelievesToBeChangesNothing)
@@ -196,7 +196,7 @@ TEST(PlaceRecognizer, WhereTheQueryBelievesToBeChangesNothing)
 	const auto b = recognized(moved(room, yawPose(5, 6, 7, 2)), room);
 	EXPECT_EQ(a.decision, b.decision);
 	EXPECT_EQ(a.matches, b.matches);
-	EXPECT_NEAR(a.evidence, b.evidence, 0.01);
+	EXPECT_NEAR(a.evidence.value(), b.evidence.value(), 0.01);
 	EXPECT_NEAR(a.probability, b.probability, 1e-3);
 }
 
@@ -231,7 +231,7 @@ TEST(PlaceRecognizer, APriorWiderThanTheMapSaysWhatNoPriorSays)
 	prior.sigmaXY = prior.sigmaZ = 30;
 	prior.sigmaYaw = 5;
 	const auto vague = recognized(room, target, "pairwise", prior), none = recognized(room, target);
-	EXPECT_DOUBLE_EQ(vague.evidence, none.evidence);
+	EXPECT_DOUBLE_EQ(vague.evidence.value(), none.evidence.value());
 	EXPECT_EQ(vague.decision, Decision::Accepted);
 	EXPECT_EQ(vague.reason, none.reason);
 }
@@ -343,7 +343,7 @@ TEST(PlaceRecognizer, ThePublishedMatcherTakesHalfOfTheEdgesForALoop)
 		target.vertices[i].position.x += 10 * double((i + 1) * (i + 1));
 	const auto verdict = recognized(query, target, "spectral");
 	EXPECT_EQ(verdict.decision, Decision::Rejected);
-	EXPECT_NEAR(verdict.matchedEdgeShare, 10.0 / 45, 1e-9);
+	EXPECT_NEAR(verdict.matchedEdgeShare.value(), 10.0 / 45, 1e-9);
 	EXPECT_THAT(verdict.reason, HasSubstr("22 % of the 45 edges"));
 	EXPECT_EQ(recognized(query, target).decision, Decision::Accepted);
 }

@@ -142,8 +142,8 @@ TEST_F(SemanticLoopDetectorOnAMap, CorrectsTheDriftToAFractionOfAVoxel)
 	const auto corrected = verdict.T_target_query + drift;
 	EXPECT_LT(corrected.translation().norm(), 0.01);
 	EXPECT_LT(rotationAngle(corrected), 0.01);
-	EXPECT_GT(verdict.alignmentFitness, 0.8);
-	EXPECT_LT(verdict.alignmentRmse, 0.01);
+	EXPECT_GT(verdict.alignmentFitness.value(), 0.8);
+	EXPECT_LT(verdict.alignmentRmse.value(), 0.01);
 	EXPECT_THAT(verdict.reason, HasSubstr("surface points align"));
 
 	ASSERT_EQ(verdict.alignments.size(), kObjects);

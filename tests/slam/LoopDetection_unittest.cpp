@@ -57,6 +57,7 @@ public:
 		LoopVerdict verdict;
 		if (ambiguous_) verdict.decision = LoopVerdict::Decision::Ambiguous;
 		verdict.probability = 0.25;
+		verdict.centreRmse = 0.5;
 		return verdict;
 	}
 
@@ -129,6 +130,9 @@ TEST(LoopDetection, IsToldWhatOdometrySaysOfTheDriftSinceTheRestWasSeen)
 	while (std::getline(stream, line)) written = nlohmann::json::parse(line);
 	EXPECT_EQ(written["prior"]["sigma_xy"], last);
 	EXPECT_EQ(written["probability"], 0.25);
+	EXPECT_EQ(written["centre_rmse"], 0.5);
+	for (const char* notEstimated : {"evidence", "runner_up", "alignment_fitness"})
+		EXPECT_TRUE(written.at(notEstimated).is_null()) << notEstimated;
 }
 
 TEST(LoopDetection, IsShownEveryFrameAndKnowsTheCameras)

@@ -178,8 +178,9 @@ LoopVerdict PlaceRecognizer::publishedVerdict(
 	verdict.matches = idsOf(matching.matches, query, index);
 	verdict.candidates = verdict.matches;
 	verdict.matchingScore = matching.score;
-	verdict.matchedEdgeShare =
+	const double edgeShare =
 		matchedEdgeShare(query, target, matching.matches, kEdgeLengthTolerance);
+	verdict.matchedEdgeShare = edgeShare;
 	std::vector<WeightedPair> pairs;
 	for (const auto& [j, k] : matching.matches)
 		pairs.push_back({query.vertices[j].position, index.point(k)});
@@ -191,9 +192,9 @@ LoopVerdict PlaceRecognizer::publishedVerdict(
 		verdict.centreRmse = rmseOf(query, index, matching.matches, verdict.T_target_query);
 	}
 	verdict.reason = mrpt::format(
-		"%.0f %% of the %zu edges matched, needed are %.0f %%", 100 * verdict.matchedEdgeShare,
-		query.edges.size(), 100 * kPublishedEdgeShare);
-	verdict.graphsMatch = verdict.matchedEdgeShare >= kPublishedEdgeShare;
+		"%.0f %% of the %zu edges matched, needed are %.0f %%", 100 * edgeShare, query.edges.size(),
+		100 * kPublishedEdgeShare);
+	verdict.graphsMatch = edgeShare >= kPublishedEdgeShare;
 	if (!verdict.graphsMatch) return verdict;
 	if (pose)
 		verdict.decision = Decision::Accepted;
@@ -261,8 +262,9 @@ void PlaceRecognizer::judge(
 	verdict.evidence = best.evidence;
 	verdict.centreRmse = rmseOf(query, target, best.matches, best.T_target_query);
 	verdict.probability = probabilityOf(best, query.vertices.size(), rivals, options_.search);
-	if (!rivals.empty() && best.evidence > 0)
-		verdict.runnerUp = std::clamp(rivals.front().evidence / best.evidence, 0.0, 1.0);
+	const bool hasRival = !rivals.empty() && best.evidence > 0;
+	verdict.runnerUp =
+		hasRival ? std::clamp(rivals.front().evidence / best.evidence, 0.0, 1.0) : 0.0;
 	verdict.reason = mrpt::format(
 		"%zu of %zu objects fit one place (within %.2f m, evidence %.1f), the best other place has "
 		"%.1f: probability %.3f",

@@ -44,7 +44,8 @@ void dropWhatTheSurfacesRefute(
 		alignments.push_back(verdict.alignments[i]);
 		sum += error.sqrNorm();
 	}
-	verdict.centreRmse = matches.empty() ? 0.0 : std::sqrt(sum / double(matches.size()));
+	verdict.centreRmse.reset();
+	if (!matches.empty()) verdict.centreRmse = std::sqrt(sum / double(matches.size()));
 	verdict.matches = std::move(matches);
 	verdict.alignments = std::move(alignments);
 }

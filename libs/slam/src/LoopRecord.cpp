@@ -3,11 +3,18 @@
 
 #include <algorithm>
 #include <nlohmann/json.hpp>
+#include <optional>
 
 namespace semloop
 {
 namespace
 {
+nlohmann::ordered_json orNull(const std::optional<double>& value)
+{
+	if (value) return *value;
+	return nullptr;
+}
+
 nlohmann::ordered_json toJson(const LoopRecord& record)
 {
 	const LoopVerdict& v = record.verdict;
@@ -47,13 +54,13 @@ nlohmann::ordered_json toJson(const LoopRecord& record)
 	line["query_objects"] = v.queryObjects;
 	line["candidates"] = v.candidates;
 	line["graphs_match"] = v.graphsMatch;
-	line["matched_edge_share"] = v.matchedEdgeShare;
-	line["matching_score"] = v.matchingScore;
-	line["evidence"] = v.evidence;
-	line["centre_rmse"] = v.centreRmse;
-	line["runner_up"] = v.runnerUp;
-	line["alignment_fitness"] = v.alignmentFitness;
-	line["alignment_rmse"] = v.alignmentRmse;
+	line["matched_edge_share"] = orNull(v.matchedEdgeShare);
+	line["matching_score"] = orNull(v.matchingScore);
+	line["evidence"] = orNull(v.evidence);
+	line["centre_rmse"] = orNull(v.centreRmse);
+	line["runner_up"] = orNull(v.runnerUp);
+	line["alignment_fitness"] = orNull(v.alignmentFitness);
+	line["alignment_rmse"] = orNull(v.alignmentRmse);
 	if (record.driftSigmas) line["drift_sigmas"] = *record.driftSigmas;
 	if (record.optimization)
 		line["optimization"] = {

@@ -76,14 +76,15 @@ struct LoopVerdict
 	/** As the graphs were matched, before surfaces were compared; query id first. */
 	std::vector<std::pair<ObjectId, ObjectId>> candidates;
 	bool graphsMatch = false;  //!< they, or the images, are a detection, whatever the surfaces say
-	std::size_t queryObjects = 0;   //!< objects in the local map
-	double matchedEdgeShare = 0.0;  //!< matched edges / edges of the query graph, [0, 1]
-	double matchingScore = 0.0;     //!< of the graph matcher
-	double evidence = 0.0;          //!< of the place, see PlaceSearch
-	double centreRmse = 0.0;        //!< of the matched centres under T_target_query [m]
-	double runnerUp = 0.0;          //!< evidence of the best other place / ours, in [0, 1]
-	double alignmentFitness = 0.0;  //!< share of aligned surface points, [0, 1]
-	double alignmentRmse = 0.0;     //!< of the aligned surfaces [m]
+	std::size_t queryObjects = 0;  //!< objects in the local map
+	// Empty when it did not come to that.
+	std::optional<double> matchedEdgeShare;  //!< matched edges / edges of the query graph, [0, 1]
+	std::optional<double> matchingScore;     //!< of the graph matcher
+	std::optional<double> evidence;          //!< of the place, see PlaceSearch
+	std::optional<double> centreRmse;        //!< of the matched centres under T_target_query [m]
+	std::optional<double> runnerUp;          //!< evidence of the best other place / ours, [0, 1]
+	std::optional<double> alignmentFitness;  //!< share of aligned surface points, [0, 1]
+	std::optional<double> alignmentRmse;     //!< of the aligned surfaces [m]
 };
 
 /** Recognises the local map (query) in the rest of the map (target). A module. */
