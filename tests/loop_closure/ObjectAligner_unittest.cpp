@@ -311,6 +311,61 @@ TEST_F(ObjectAlignerOnThreeObjects, TheCovarianceIsThatOfTheErrorsAndGoesWithThe
 	EXPECT_LT((moved.covariance - result.covariance).norm(), 0.2 * result.covariance.norm());
 }
 
+TEST_F(ObjectAlignerOnThreeObjects, AsPublishedTheCovarianceIsAboutTheSameMiddle)
+{
+	ObjectAligner aligner;
+	const auto joint = aligner.align(pairs, semanticPose(0.05, 5));
+	aligner.options.method = "per_object_fpfh";
+	const auto single = aligner.align(pairs, semanticPose(0.05, 5));
+	ASSERT_TRUE(joint.accepted && single.accepted);
+	// One object tells less than three, most of all how the others' middle moves when it turns.
+	for (int i = 0; i < 6; ++i) EXPECT_GT(single.covariance(i, i), joint.covariance(i, i)) << i;
+	TPoint3D middle;
+	for (const auto& pair : pairs) middle += pair.queryCentre * (1.0 / 3);
+	double nearest = 1e9;  // whichever it is, it turns about a place near its own centre
+	for (const auto& pair : pairs)
+		nearest = std::min(
+			nearest, std::hypot(pair.queryCentre.x - middle.x, pair.queryCentre.y - middle.y));
+	EXPECT_GT(
+		single.covariance(0, 0) + single.covariance(1, 1),
+		0.5 * nearest * nearest * single.covariance(5, 5));
+}
+
+TEST_F(ObjectAlignerOnThreeObjects, OneWrongMatchDoesNotMoveTheOthers)
+{
+	// The chair that stands half a metre beside the right one.
+	auto wrong = pairs;
+	for (auto& point : wrong[2].target) point.position.x += 0.5f;
+	wrong[2].targetCentre.x += 0.5;
+	const auto result = ObjectAligner().align(wrong, semanticPose(0.1, 5));
+	ASSERT_TRUE(result.accepted) << result.reason;
+	const TPoint3D middle(0, 0, 0.8);
+	EXPECT_LT(result.T_target_query.composePoint(middle).distanceTo(T.composePoint(middle)), 0.03);
+	EXPECT_LT(fixtures::rotationAngle(result.T_target_query - T), 0.05);
+}
+
+TEST_F(ObjectAlignerOnThreeObjects, ABarelySeenObjectHasNoSayOnItsRotation)
+{
+	auto barely = pairs;
+	auto& points = barely[0].query;
+	ASSERT_GT(points.size(), 100u);
+	// A patch of a few centimetres.
+	const auto first = points.front().position;
+	points.erase(
+		std::remove_if(
+			points.begin(), points.end(),
+			[&](const SurfacePoint& p) { return (p.position - first).norm() > 0.06f; }),
+		points.end());
+	ObjectAligner aligner;
+	const auto result = aligner.align(barely, semanticPose(0.05, 5));
+	ASSERT_TRUE(result.accepted) << result.reason;
+	const auto& alone = result.pairs[0];
+	const double floor = 1 / mrpt::square(aligner.options.rotationSigma);
+	for (int i = 3; i < 6; ++i) EXPECT_NEAR(alone.information(i, i), floor, 0.01) << i;
+	EXPECT_LT(fixtures::rotationAngle(alone.T_target_query - result.T_target_query), 0.001);
+	EXPECT_GT(result.pairs[1].information(5, 5), 2 * floor) << "the others were seen well";
+}
+
 TEST_F(ObjectAlignerOnThreeObjects, WhatWasNotSeenOfAnObjectWidensItsCentre)
 {
 	auto partly = pairs;

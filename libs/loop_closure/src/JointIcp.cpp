@@ -221,12 +221,10 @@ Matrix6d informationOf(
 }
 
 Matrix6d jointCovariance(
-	const CloudPairs& pairs, const Eigen::Isometry3d& T, const ObjectAlignerOptions& options)
+	const CloudPairs& pairs, const Eigen::Isometry3d& T, const Eigen::Vector3d& middle,
+	const ObjectAlignerOptions& options)
 {
 	const auto found = findCorrespondences(pairs, T, options.endDistance, options.maxNormalAngle);
-	Eigen::Vector3d middle = Eigen::Vector3d::Zero();
-	for (const auto& pair : pairs) middle += pair.queryCentre / pairs.count();
-
 	Matrix6d information = Matrix6d::Zero();
 	const double scale = 1 / (mrpt::square(options.surfaceSigma) *
 							  std::max(kEnough, static_cast<double>(found.items.size())));

@@ -16,7 +16,7 @@ constexpr double kLeastSpread = 0.1;   // [m^2]
 constexpr double kLeastHeight = 0.5;   // [m]
 // Of similarities. Those of one object are seldom worse than kPoorSigma below their usual value.
 constexpr float kSameSigma = 0.04f, kPoorSigma = 0.15f, kPoorShare = 0.2f, kLeastSigma = 0.03f;
-constexpr std::size_t kFew = 16;  // looked through faster than searched
+constexpr std::size_t kFew = 16;          // looked through faster than searched
 constexpr std::size_t kEnoughPairs = 10;  // to measure how alike different objects are
 
 float normal(float x, float mean, float sigma)

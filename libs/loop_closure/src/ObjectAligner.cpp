@@ -124,7 +124,9 @@ ObjectAlignment measured(
 	const auto aligned =
 		findCorrespondences(pairs, refined.T, options.endDistance, options.maxNormalAngle);
 	result.T_target_query = problem.toWorld(refined.T);
-	result.covariance = jointCovariance(pairs, refined.T, options);
+	Eigen::Vector3d middle = Eigen::Vector3d::Zero();
+	for (const auto& pair : problem.pairs) middle += pair.queryCentre / problem.all().count();
+	result.covariance = jointCovariance(pairs, refined.T, middle, options);
 	result.iterations = refined.iterations;
 	result.fitness =
 		static_cast<double>(aligned.items.size()) / static_cast<double>(pairs.queryPoints());

@@ -119,7 +119,9 @@ enum class RotationSeen
 	None        //!< barely seen
 };
 /** Symmetric: sum ((p x n)_z)^2 < 1/16 sum |p_xy|^2 |n_xy|^2 over the aligned points p, relative to the best axis,
- *  which is no further from the centre than the points are. */
+ *  which is no further from the centre than the points are. A motion that leaves the point-to-plane distances as
+ *  they are is the degenerate direction of the problem (J. Zhang, M. Kaess, S. Singh, On degeneracy of
+ *  optimization-based state estimation problems, ICRA 2016), tested here for the one that furniture has. */
 RotationSeen rotationSeen(
 	const CloudPair& pair, const Eigen::Isometry3d& T, const ObjectAlignerOptions& options);
 
@@ -129,9 +131,10 @@ Eigen::Matrix<double, 6, 6> informationOf(
 	const CloudPair& pair, const Eigen::Isometry3d& T, RotationSeen seen,
 	const ObjectAlignerOptions& options);
 
-/** See ObjectAlignment::covariance. */
+/** Of a motion about `middle` as far as these pairs tell it, see ObjectAlignment::covariance. */
 Eigen::Matrix<double, 6, 6> jointCovariance(
-	const CloudPairs& pairs, const Eigen::Isometry3d& T, const ObjectAlignerOptions& options);
+	const CloudPairs& pairs, const Eigen::Isometry3d& T, const Eigen::Vector3d& middle,
+	const ObjectAlignerOptions& options);
 
 /** FPFH matched within each pair, then RANSAC over all; empty when no model has 10 inliers. */
 std::optional<Eigen::Isometry3d> alignFeatures(
