@@ -1,4 +1,3 @@
-#include <semloop/config/Error.h>
 #include <semloop/loop_closure/PlaceSearch.h>
 
 #include <algorithm>
@@ -7,6 +6,7 @@
 
 #include "MatchCandidates.h"
 #include "PlaceEvidence.h"
+#include "Shortlist.h"
 
 namespace semloop
 {
@@ -22,72 +22,6 @@ constexpr double kWorkForAllPairs = 2e6;   // pairs of candidates
 constexpr std::size_t kGroupSize = 4;
 // Candidates looked at. Thousands of objects that all look alike must not take for ever: a few seconds.
 constexpr std::ptrdiff_t kMostWork = 200'000'000;
-constexpr std::size_t kHypotheses = 12;  // that are refined
-// Evidence behind the best from where no rival comes back: the refinement adds half of it at most.
-constexpr double kHopeless = 40;
-constexpr double kNearBest = 0.1;  // to the best hypothesis, not worth a look [m]
-constexpr double kSamePose = 0.4;  // hypotheses so near lead to one place [m]
-
-struct Proposal
-{
-	YawPose pose;
-	double support = 0;
-};
-
-/** The best few poses that differ. */
-class Shortlist
-{
-public:
-	explicit Shortlist(const MatchCandidates& candidates) : candidates_(candidates) {}
-
-	/** What does not reach this is not worth adding. */
-	double least() const
-	{
-		if (proposals_.empty()) return 0;
-		const double best = proposals_.front().support;
-		const double hopeless = best - std::max(kHopeless, 0.5 * best);
-		return proposals_.size() < kHypotheses ? hopeless
-											   : std::max(hopeless, proposals_.back().support);
-	}
-
-	void add(const Proposal& proposal)
-	{
-		for (auto other = proposals_.begin(); other != proposals_.end(); ++other)
-			if (squaredDistance(other->pose, proposal.pose) < kSamePose * kSamePose)
-			{
-				if (other->support >= proposal.support) return;
-				proposals_.erase(other);
-				break;
-			}
-		const auto place = std::upper_bound(
-			proposals_.begin(), proposals_.end(), proposal.support,
-			[](double support, const Proposal& other) { return support > other.support; });
-		proposals_.insert(place, proposal);
-		if (proposals_.size() > kHypotheses) proposals_.pop_back();
-		while (proposals_.back().support < least()) proposals_.pop_back();
-	}
-
-	/** The refinement of the best leads to the same place from there. */
-	bool isAtBest(const YawPose& pose) const
-	{
-		return !proposals_.empty() &&
-			   squaredDistance(proposals_.front().pose, pose) < kNearBest * kNearBest;
-	}
-
-	const std::vector<Proposal>& proposals() const { return proposals_; }
-
-	/** Mean over the query's centres. */
-	double squaredDistance(const YawPose& a, const YawPose& b) const
-	{
-		const double cosine = a.cosine * b.cosine + a.sine * b.sine;
-		return (a * candidates_.centroid() - b * candidates_.centroid()).sqrNorm() +
-			   2 * (1 - cosine) * candidates_.spread();
-	}
-
-private:
-	const MatchCandidates& candidates_;
-	std::vector<Proposal> proposals_;
-};
 
 double horizontalDistance(const TPoint3D& a, const TPoint3D& b)
 {
@@ -115,44 +49,6 @@ TPoint3D pointOf(const MatchCandidates::Candidate& c)
 	return {double(c.x), double(c.y), double(c.z)};
 }
 }  // namespace
-
-void PlaceSearchOptions::describe(OptionFields& fields)
-{
-	fields.number(
-		"reobserved_share", reobservedShare, 0.01, 0.99,
-		"share of the query's objects that the map has too, when the place is known");
-	fields.number(
-		"label_accuracy", labelAccuracy, 0.01, 0.999,
-		"probability that two observations of one object have one label");
-	fields.number(
-		"same_model_share", sameModelShare, 0.0001, 0.5,
-		"share of different objects that look the same");
-	fields.number(
-		"min_sigma", minSigma, 0.001, 10, "least error of a centre that is considered [m]");
-	fields.number("max_sigma", maxSigma, 0.001, 10, "largest error of a centre, same [m]");
-	fields.number(
-		"bad_centre_share", badCentreShare, 0.0001, 0.9,
-		"share of objects whose centre's error is three times that");
-	fields.number(
-		"rival_distance", rivalDistance, 0.01, 100,
-		"a pose that moves the query's objects at least this far from ours is a rival [m]");
-	fields.number(
-		"prior_doubt", priorDoubt, 0, 1,
-		"probability that odometry's prior is wrong, and the query may be anywhere");
-	fields.number(
-		"odds_per_evidence", oddsPerEvidence, 0, 10,
-		"calibration: log odds for a unit of evidence above that of all rivals");
-	fields.number(
-		"odds_per_share", oddsPerShare, 0, 1000,
-		"calibration: log odds for the matched share of the query");
-	fields.number(
-		"even_odds", evenOdds, -1000, 1000, "calibration: sum of both at a probability of 0.5");
-}
-
-void PlaceSearchOptions::requireConsistent() const
-{
-	if (minSigma > maxSigma) throw UsageError("min_sigma: must not be larger than max_sigma");
-}
 
 class PlaceSearch::Impl
 {
